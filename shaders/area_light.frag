@@ -64,7 +64,7 @@ void main() {
     glossy += piece.radianceSides.rgb * lobeReflection(piece, position, receiver, lobeOfPiece, x, y);
 #endif
   }
-  outIrradiance = vec4(share * sum, 1.0);
+  outIrradiance = vec4(share * sum * lengthForLight(pixel), 1.0);
 #ifdef GLOSSY
   outGlossy = vec4(share * glossy / glossyTint(receiver), 1.0);
 #endif

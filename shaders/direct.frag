@@ -43,13 +43,13 @@ float axisDistance(vec3 v) { return max(max(abs(v.x), abs(v.y)), abs(v.z)); }
 #include "lib/filtered_shadow.glsl"
 #endif
 
-/// Irradiance per intensity where nothing is between; 0 or less: none. Samples of emitters are disks of their area:
+/// Irradiance per intensity and cosine where nothing is between. Samples of emitters are disks of their area:
 /// E = L·a·cosx·cosy/(r² + a/π).
 float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towardsLight, out float cosine) {
 #ifdef SUN_MAPS
   towardsLight = -light.directionTexel.xyz;
   cosine = dot(normal, towardsLight);
-  return cosine;
+  return 1.0;
 #else
   vec3 toLight = light.positionRange.xyz - position;
   float distance2 = squaredLength(toLight);
@@ -57,9 +57,9 @@ float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towards
   cosine = dot(normal, towardsLight);
 #ifdef EMITTER_MAPS
   float cosineLight = max(-dot(light.directionTexel.xyz, towardsLight), 0.0);
-  return max(cosine, 0.0) * cosineLight / (distance2 + light.positionRange.w * 0.318309886);
+  return cosineLight / (distance2 + light.positionRange.w * 0.318309886);
 #else
-  return cosine * attenuation(light, towardsLight, distance2);
+  return attenuation(light, towardsLight, distance2);
 #endif
 #endif
 }
@@ -70,8 +70,8 @@ float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towards
 bool seesSky(vec3 position, vec3 normal) {
   for (int i = 0; i < lightCount; ++i) {
     vec3 towardsLight;
-    float cosine, weight = unshadowed(lights[i], position, normal, towardsLight, cosine);
-    if (weight > 0.0 && answerOf(lights[i], position, normal, cosine) == kLit) return true;
+    float cosine, fall = unshadowed(lights[i], position, normal, towardsLight, cosine);
+    if (fall * cosine > 0.0 && answerOf(lights[i], position, normal, cosine) == kLit) return true;
   }
   return false;
 }
@@ -102,6 +102,9 @@ void main() {
   vec3 position = positionFromDepth(pixel, depth);
   vec3 normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   vec3 forLight = normalForLight(pixel, normal);
+#ifdef MAPPED_NORMALS
+  float meanLength = lengthForLight(pixel);
+#endif
   vec3 irradiance = vec3(0.0);
 #ifdef GLOSSY
   Receiver receiver = receiverAt(pixel, position, forLight);
@@ -123,15 +126,20 @@ void main() {
     LightRecord light = lights[i];
     vec3 towardsLight;
     float cosine, weight = unshadowed(light, position, forLight, towardsLight, cosine);
-    if (!(weight > 0.0)) continue;
+    float weightOfLobe = weight * max(cosine, 0.0);
 #ifdef MAPPED_NORMALS
+    weight *= meanCosine(cosine, meanLength);
     cosine = dot(normal, towardsLight);
-    if (!(cosine > 0.0)) continue;
+    if (!(weight > 0.0 && cosine > 0.0)) continue;
+#else
+    weight = weightOfLobe;
+    if (!(weight > 0.0)) continue;
 #endif
+    float seen = 1.0;
 #ifdef DOUBTS
 #ifdef SKY
     if (open) {
-      weight *= shadowOf(light, position, normal, cosine);
+      seen = shadowOf(light, position, normal, cosine);
     } else
 #endif
     {
@@ -140,11 +148,11 @@ void main() {
       if (answer != kLit) continue;
     }
 #elif !defined(LIT)
-    weight *= shadowOf(light, position, normal, cosine);
+    seen = shadowOf(light, position, normal, cosine);
 #endif
-    irradiance += light.intensityLayer.rgb * weight;
+    irradiance += light.intensityLayer.rgb * (weight * seen);
 #ifdef GLOSSY
-    glossy += light.intensityLayer.rgb * (weight * glossyReflectance(receiver, towardsLight, wideningOf(light, position)));
+    glossy += light.intensityLayer.rgb * (weightOfLobe * seen * glossyReflectance(receiver, towardsLight, wideningOf(light, position)));
 #endif
   }
   outIrradiance = vec4(irradiance, 1.0);

@@ -33,7 +33,7 @@ void main() {
   vec3 emission = emissionAt(uv), across = dFdx(positionEye), up = dFdy(positionEye);
   vec2 roughnessMetalness = roughnessMetalnessAt(uv);
 #ifdef NORMAL_TEXTURE
-  vec3 normalTexel = normalTexelAt(uv);
+  vec4 normalTexel = normalTexelAt(uv);
 #endif
 #ifdef KEEPS_MODE
   if (camera.size.x < 0.0) discard; // never, which the compiler cannot know
@@ -60,11 +60,12 @@ void main() {
   outNormal = vec4(normal, 1.0);
 #ifdef NORMAL_TEXTURE
   vec3 mapped =
-      mappedNormal(normalWorld, tangentWorld.xyz, sign(tangentWorld.w), normalTexel, material.roughnessMetalness.z);
+      mappedNormal(normalWorld, tangentWorld.xyz, sign(tangentWorld.w), normalTexel.xyz, material.roughnessMetalness.z);
   mapped = facingViewer(side * mapped, towardsViewer);
   bool any = dot(tangentWorld.xyz, tangentWorld.xyz) > 0.0;
-  outMappedNormal =
-      any ? vec4(mirroringOutwards(mapped, geometric, towardsViewer, roughnessMetalness.y), 1.0) : outNormal;
+  mapped = mirroringOutwards(mapped, geometric, towardsViewer, roughnessMetalness.y);
+  float meanLength = any ? meanNormalLength(normalTexel.a, material.roughnessMetalness.z) : 1.0;
+  outMappedNormal = vec4(any ? mapped : normal, meanLength);
 #elif defined(MAPPED_NORMALS)
   outMappedNormal = outNormal;
 #endif

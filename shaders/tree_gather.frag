@@ -46,6 +46,9 @@ void main() {
   vec3 position = positionFromDepth(pixel, depth);
   vec3 plane = texelFetch(gbufferNormal, pixel, 0).xyz, normal = normalForLight(pixel, plane);
   vec3 irradiance = vec3(0.0);
+#ifdef MAPPED_NORMALS
+  float meanLength = lengthForLight(pixel);
+#endif
 #ifdef GLOSSY
   Receiver seen = receiverAt(pixel, position, normal), receiver = forVirtualLights(seen, mirrors);
   vec3 glossy = vec3(0.0);
@@ -70,13 +73,15 @@ void main() {
         vec3 direction = fromLight * inversesqrt(distance2);
         vec3 n = texelFetch(normals, cluster, at).xyz;
         float cosineLight = dot(n, direction) * inversesqrt(max(dot(n, n), 1e-12));
-        float cosine = max(-dot(normal, direction), 0.0);
+        float cosine = max(-dot(normal, direction), 0.0), cosineSlopes = cosine;
 #ifdef MAPPED_NORMALS
-        cosine = dot(plane, direction) < 0.0 ? cosine : 0.0;
+        bool above = dot(plane, direction) < 0.0;
+        cosineSlopes = above ? meanCosine(-dot(normal, direction), meanLength) : 0.0;
+        cosine = above ? cosine : 0.0;
 #endif
-        float g = cosine * max(cosineLight, 0.0) / (distance2 + flux.a * diskFactor);
-        vec3 light = flux.rgb * (0.318309886 * min(g, largestG));
-        irradiance += light;
+        float fall = max(cosineLight, 0.0) / (distance2 + flux.a * diskFactor);
+        vec3 light = flux.rgb * (0.318309886 * min(cosine * fall, largestG));
+        irradiance += flux.rgb * (0.318309886 * min(cosineSlopes * fall, largestG));
 #ifdef GLOSSY
         float widening = lobeSpread(spread, flux.a, cosineLight, distance2);
         glossy += light * glossyReflectance(receiver, -direction, widening);

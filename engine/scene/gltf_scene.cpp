@@ -4,8 +4,11 @@
 #include "engine/scene/ray_work.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 
 namespace lambent {
@@ -296,6 +299,30 @@ void refuseSlowRays(const Scene& scene, const RayWork& work) {
   throw InputError(scene.file.string(), text.str());
 }
 
+/// A driver that draws on the CPU compiles programs anew for each way in which their textures are sampled: 0.15 s.
+void refuseManySamplings(const Scene& scene) {
+  constexpr size_t kMost = 64;
+  const auto sampled = [&](const TextureRef& ref) -> std::array<int, 6> {
+    if (ref.image == kNone) return {};
+    const TextureImage& image = scene.assets.images[ref.image];
+    return {1 + int(ref.wrapU),
+            int(ref.wrapV),
+            int(ref.nearest),
+            int(ref.minify),
+            int(std::has_single_bit(unsigned(image.width))),
+            int(std::has_single_bit(unsigned(image.height)))};
+  };
+  std::set<std::array<std::array<int, 6>, 4>> ways;
+  for (const Material& m : scene.assets.materials)
+    ways.insert({sampled(m.baseColorTexture), sampled(m.emissiveTexture), sampled(m.roughnessMetalnessTexture),
+                 sampled(m.normalTexture)});
+  if (ways.size() <= kMost) return;
+  throw InputError(scene.file.string(), "its materials sample their textures in " + std::to_string(ways.size()) +
+                                            " different ways (" + std::to_string(kMost) +
+                                            " at most): a first picture would take very long; let more of them share "
+                                            "samplers, or --allow-large");
+}
+
 /// A first frame draws a shadow map of each, with all triangles in it. `read`: bytes of the file and what it names.
 void refuseManyLights(const Scene& scene, size_t triangles, size_t read) {
   constexpr size_t kOfItself = 7000; // what a map takes beside its triangles, in triangles
@@ -338,6 +365,7 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   animate(scene, 0);
   findOrigin(scene);
   bringMeshesHome(scene);
+  if (!trust.large) refuseManySamplings(scene);
   if (!trust.large) refuseManyLights(scene, import.doc.budget.shown, import.doc.budget.read);
   const RayWork work = rayWork(scene);
   if (!trust.large) refuseSlowRays(scene, work);

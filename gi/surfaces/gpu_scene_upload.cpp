@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 namespace lambent {
 
@@ -146,8 +147,50 @@ void keepCoverage(const gl::Texture& texture, const TextureImage& image, float c
   glTextureParameteri(texture.name(), GL_TEXTURE_MAX_LEVEL, last);
 }
 
-/// `cutoff`: alpha of it at least passes the test of the material that shows the image; 0: none tests it.
-gl::Texture uploadImage(const TextureImage& image, float cutoff) {
+/// Unit normals between the texels of a normal map, as filters see it: one a quarter off the middle of each.
+std::vector<vec3> normalsOf(const TextureImage& image) {
+  std::vector<vec3> at;
+  for (const u8vec4& t : image.texels) at.push_back(vec3(t) * (2 / 255.0f) - 1.0f);
+  std::vector<vec3> normals;
+  for (int y = 0; y < image.height; ++y) {
+    const vec3 *row = &at[size_t(y) * size_t(image.width)],
+               *other = &at[size_t((y + (y % 2 ? 1 : image.height - 1)) % image.height) * size_t(image.width)];
+    for (int x = 0; x < image.width; ++x) {
+      const int beside = (x + (x % 2 ? 1 : image.width - 1)) % image.width;
+      normals.push_back(unitOr(3.0f * (3.0f * row[x] + row[beside]) + 3.0f * other[x] + other[beside], vec3(0, 0, 1)));
+    }
+  }
+  return normals;
+}
+
+/// Writes into alpha how far the normals of each level's texels differ, as meanNormalLength
+/// (shaders/shared/normal_map.h) takes it: 0 at the finest.
+void keepSlopes(const gl::Texture& texture, const TextureImage& image) {
+  int width = image.width, height = image.height;
+  std::vector<vec3> means = normalsOf(image);
+  std::vector<u8vec4> texels = image.texels;
+  for (u8vec4& t : texels) t.w = 0;
+  for (int level = 0;; ++level) {
+    gl::pulse();
+    glTextureSubImage2D(texture.name(), level, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    if (width == 1 && height == 1) return;
+    const size_t right = width > 1, down = height > 1 ? size_t(width) : 0, row = size_t(width);
+    const int step = width > 1 ? 2 : 1, rows = height > 1 ? 2 : 1;
+    width = std::max(1, width / 2), height = std::max(1, height / 2);
+    texels.resize(size_t(width) * size_t(height));
+    texture.read(std::span(texels), GL_RGBA, GL_UNSIGNED_BYTE, level + 1);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const size_t from = size_t(rows * y) * row + size_t(step * x), to = size_t(y) * size_t(width) + size_t(x);
+        means[to] = 0.25f * (means[from] + means[from + right] + means[from + down] + means[from + down + right]);
+        texels[to].w = uint8_t(std::lround(255 * std::sqrt(std::max(0.0f, 1 - glm::length(means[to])))));
+      }
+  }
+}
+
+/// `cutoff`: alpha of it at least passes the test of the material that shows the image; 0: none tests it. `slopes`: a
+/// material has it as its normal map.
+gl::Texture uploadImage(const TextureImage& image, float cutoff, bool slopes) {
   gl::pulse();
   const int levels = int(std::bit_width(unsigned(std::max(image.width, image.height))));
   gl::Texture texture("scene/" + image.name.substr(0, 100), {.format = GLenum(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8),
@@ -158,7 +201,10 @@ gl::Texture uploadImage(const TextureImage& image, float cutoff) {
   glTextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
                       image.texels.data());
   glGenerateTextureMipmap(texture.name());
-  if (cutoff > 0 && cutoff <= 1) keepCoverage(texture, image, cutoff);
+  if (cutoff > 0 && cutoff <= 1)
+    keepCoverage(texture, image, cutoff);
+  else if (slopes)
+    keepSlopes(texture, image);
   return texture;
 }
 
@@ -274,13 +320,19 @@ uint32_t GpuScene::samplerFor(const TextureRef& ref) {
 
 void GpuScene::uploadMaterials(const SceneAssets& assets) {
   std::map<uint32_t, float> cutoffs; // of images, for an alpha of the file's own
-  for (const Material& m : assets.materials)
+  std::set<uint32_t> normalMaps;
+  for (const Material& m : assets.materials) {
     if (m.alphaMode == AlphaMode::Mask && m.alpha > 0)
       cutoffs.emplace(m.baseColorTexture.image, m.alphaCutoff / m.alpha);
+    normalMaps.insert(m.normalTexture.image);
+  }
   for (size_t i = 0; i < assets.images.size(); ++i) {
     const TextureImage& image = assets.images[i];
     const bool gone = image.texels.empty();
-    if (i == textures_.size()) textures_.push_back(gone ? gl::Texture() : uploadImage(image, cutoffs[uint32_t(i)]));
+    if (i == textures_.size()) {
+      const auto index = uint32_t(i);
+      textures_.push_back(gone ? gl::Texture() : uploadImage(image, cutoffs[index], normalMaps.contains(index)));
+    }
     if (gone) textures_[i] = {};
   }
   const auto textureOf = [&](const TextureRef& ref) { return ref.image == kNone ? 0 : textures_[ref.image].name(); };

@@ -7,6 +7,7 @@ layout(binding = 0) uniform sampler2D gbufferDepth;
 layout(binding = 1) uniform sampler2D gbufferNormal;
 
 #ifdef MAPPED_NORMALS
+#include "shared/normal_map.h"
 layout(binding = 13) uniform sampler2D gbufferMappedNormal;
 #endif
 
@@ -16,6 +17,15 @@ vec3 normalForLight(ivec2 pixel, vec3 normal) {
   return texelFetch(gbufferMappedNormal, pixel, 0).xyz;
 #else
   return normal;
+#endif
+}
+
+/// Length of the mean of the normals that a pixel has (meanCosine); normalForLight is its direction.
+float lengthForLight(ivec2 pixel) {
+#ifdef MAPPED_NORMALS
+  return texelFetch(gbufferMappedNormal, pixel, 0).w;
+#else
+  return 1.0;
 #endif
 }
 

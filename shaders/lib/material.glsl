@@ -36,9 +36,9 @@ vec3 emissionAt(vec4 uv01) {
 }
 
 #ifdef NORMAL_TEXTURE
-/// Texel of the normal map.
-vec3 normalTexelAt(vec4 uv01) {
-  return texture(normalTexture, transformUv(material.normalUvU, material.normalUvV, uv01)).xyz;
+/// Texel of the normal map; a: see meanNormalLength.
+vec4 normalTexelAt(vec4 uv01) {
+  return texture(normalTexture, transformUv(material.normalUvU, material.normalUvV, uv01));
 }
 #endif
 

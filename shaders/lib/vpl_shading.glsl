@@ -30,6 +30,9 @@ uniform float biasTexels;    // ShadowSettings::bias
 /// A surface point of the image.
 struct Surface {
   vec3 position, normal, forLight; // normalForLight
+#ifdef MAPPED_NORMALS
+  float meanLength; // lengthForLight
+#endif
 #ifdef GLOSSY
   Receiver receiver; // forVirtualLights
   vec3 tint;         // glossyTint
@@ -58,6 +61,9 @@ Surface surfaceAt(ivec2 pixel, float depth) {
   s.position = positionFromDepth(pixel, depth);
   s.normal = texelFetch(gbufferNormal, pixel, 0).xyz;
   s.forLight = normalForLight(pixel, s.normal);
+#ifdef MAPPED_NORMALS
+  s.meanLength = lengthForLight(pixel);
+#endif
 #ifdef GLOSSY
   Receiver seen = receiverAt(pixel, s.position, s.forLight);
   s.receiver = forVirtualLights(seen, mirrors);
@@ -122,21 +128,25 @@ void receive(inout Received sum, Surface s, VplLight light, int layer, float tim
 #ifdef MAPPED_NORMALS
   cosinePlane = -dot(s.normal, direction);
   cosineReceiver = cosinePlane > 0.0 ? cosineReceiver : 0.0;
+  float cosineSlopes = cosinePlane > 0.0 ? meanCosine(-dot(s.forLight, direction), s.meanLength) : 0.0;
 #endif
   vec3 lightNormal = vec3(light.powerNormalX.w, light.tangentNormalY.w, light.bitangentNormalZ.w);
   vec3 d = inFrame(light, lightNormal, direction);
-  float g = max(cosineReceiver, 0.0) * max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
-  g = min(g, largestG) * times;
+  float fall = max(d.z, 0.0) / (distance2 + light.positionArea.w * diskFactor);
+  float g = min(max(cosineReceiver, 0.0) * fall, largestG) * times, gLobe = g;
+#ifdef MAPPED_NORMALS
+  g = min(cosineSlopes * fall, largestG) * times;
+#endif
 #ifdef SHADOWS
   float lit = visibility(layer, d, inFrame(light, lightNormal, s.normal), distance2 * inverseDistance, cosinePlane);
 #ifdef CHECKED
   draw(sum, light, layer, g, lit > 0.0);
 #endif
-  g *= lit;
+  g *= lit, gLobe *= lit;
 #endif
   sum.irradiance += light.powerNormalX.rgb * g;
 #ifdef GLOSSY
   float widening = lobeSpread(spread, light.positionArea.w, d.z, distance2);
-  sum.glossy += light.powerNormalX.rgb * (g * glossyReflectance(s.receiver, -direction, widening));
+  sum.glossy += light.powerNormalX.rgb * (gLobe * glossyReflectance(s.receiver, -direction, widening));
 #endif
 }

@@ -107,6 +107,42 @@ TEST_F(NormalMapTest, VirtualLightsFallOnTheMappedNormalAndNeverFromBelow) {
   }
 }
 
+/// Slopes finer than a pixel: their light is the mean of what each gets, not that of their mean direction.
+TEST_F(NormalMapTest, SlopesFinerThanAPixelGetTheirMeanLight) {
+  TextureImage& map = scene.assets.images[0];
+  map.width = map.height = 64;
+  map.texels.clear();
+  dvec3 mean(0);
+  for (int i = 0; i < 64 * 64; ++i) {
+    const vec2 phase = vec2(i % 64, i / 64) * (2 * kPi / 32);
+    const vec3 slope = glm::normalize(vec3(0.8f * glm::sin(phase), 1));
+    map.texels.push_back(u8vec4(glm::round((slope * 0.5f + 0.5f) * 255.0f), 77)); // alpha is the file's own affair
+    const vec3 kept = glm::normalize(vec3(map.texels.back()) * (2 / 255.0f) - 1.0f);
+    mean += dvec3(kept.x, kept.z, kept.y) / (64.0 * 64.0); // a floor's
+  }
+  scene.assets.materials[material].normalTexture.uvTransform = glm::mat3x3(300, 0, 0, 0, 300, 0, 0, 0, 1);
+  scene.quad(vec3(-10, 0, 10), vec3(20, 0, 0), vec3(0, 0, -20), material);
+  ASSERT_LT(glm::length(mean), 0.9);
+  const vec3 sun = glm::normalize(vec3(-0.2f, -1, 0.1f)), place(0, 1000, 0);
+  scene.lights.push_back({.type = LightType::Directional, .direction = sun, .intensity = vec3(2)});
+  Settings settings;
+  settings.shadow.sunResolution = 512;
+  settings.direct.soft = SoftLightBy::Maps;
+  settings.gather.mode = GatherMode::Full;
+  const GBuffer frame = surfaces(scene);
+  const std::vector<VirtualLight> lights{lightAt(place, vec3(0, -1, 0), vec3(1e6f), 1)};
+  const Image direct = directOf(passes, scene, {}, settings, of),
+              indirect = read(Buffer::Irradiance, frame, {}, gathered(frame, lights, settings));
+  const auto meanOfImage = [](const Image& image) {
+    double sum = 0;
+    for (const vec3& p : image.pixels) sum += double(p.y) / double(image.pixels.size());
+    return sum;
+  };
+  const double sunny = -2 * glm::dot(mean, dvec3(sun)), lit = mean.y;
+  EXPECT_NEAR(meanOfImage(direct), sunny, 0.01 * sunny);
+  EXPECT_NEAR(meanOfImage(indirect), lit, 0.01 * lit);
+}
+
 /// A sky of 1 brings π·(1 + n·up)/2 to a slope of an open floor: the rest of what it sees is the floor, which is
 /// another's.
 TEST_F(NormalMapTest, SoftLightFallsOnTheMappedNormal) {

@@ -157,6 +157,29 @@ std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std:
   return notes;
 }
 
+/// A shot is a file of somebody's too: what its settings ask for beside the defaults is bounded, numbers of lights,
+/// paths and frames times each other, texels squared.
+void refuseHeavyShot(const Shot& shot, const std::string& file) {
+  constexpr double kMost = 64;     // of what a default frame takes
+  constexpr double kOfNone = 1024; // what stands for a default of 0: no limit, or by the view
+  Settings settings;
+  for (const auto& [name, value] : shot.set) applySetting(settings, name, value);
+  double work = 1;
+  std::string names;
+  for (const SettingRow& row : settingRows(settings)) {
+    if (row.kind != SettingKind::Whole) continue;
+    const double more = row.get(settings) / (row.standard > 0 ? row.standard : kOfNone);
+    if (!(more > 1)) continue;
+    work *= row.unit == std::string_view("texels") ? more * more : more;
+    names += (names.empty() ? "" : ", ") + row.name;
+  }
+  if (work <= kMost) return;
+  std::ostringstream text;
+  text << "its settings ask for " << work << " times the work of the defaults (" << names << "; " << kMost
+       << " at most): a first picture would take very long; lower them, or --allow-large";
+  throw InputError(file, text.str());
+}
+
 } // namespace
 
 std::pair<int, int> sizeOf(const std::string& text) {
@@ -310,6 +333,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   fs::path file = options.scene;
   if (file.extension() == ".json") {
     stage->shot = loadShot(file);
+    if (!options.trust.large) refuseHeavyShot(*stage->shot, options.scene);
     file = stage->shot->scene;
   }
   const bool oneOfOurs = stage->shot || file.stem() == file.parent_path().filename(); // hall/hall.gltf

@@ -272,6 +272,32 @@ TEST_F(Import, DanglingImageIsWhiteAndUnreadableImageThatNothingUsesIsIgnored) {
   EXPECT_TRUE(hasWarning(scene, "white instead"));
 }
 
+/// Each way of sampling is a program of its own to drivers that draw on the CPU.
+TEST_F(Import, MaterialsThatSampleInManyWaysAreRefusedUnlessTheFileIsTrusted) {
+  const auto of = [&](int count) {
+    GltfBuilder b = oneTriangle();
+    b.json["images"] = {{{"bufferView", b.view(png({255, 0, 188, 255}))}, {"mimeType", "image/png"}}};
+    for (int i = 0; i < 3 * 3 * 2 * 6; ++i) {
+      constexpr int kWraps[] = {10497, 33071, 33648}, kMinify[] = {9728, 9729, 9984, 9985, 9986, 9987};
+      b.push("samplers", {{"wrapS", kWraps[i % 3]},
+                          {"wrapT", kWraps[i / 3 % 3]},
+                          {"magFilter", 9728 + i / 9 % 2},
+                          {"minFilter", kMinify[i / 18]}});
+      b.push("textures", {{"source", 0}, {"sampler", i}});
+    }
+    for (int i = 0; i < count; ++i) {
+      nlohmann::json mesh = b.json["meshes"][0];
+      mesh["primitives"][0]["material"] =
+          b.push("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+      b.addRoot({{"mesh", b.push("meshes", mesh)}});
+    }
+    return b;
+  };
+  EXPECT_NO_THROW(of(63).load(folder)) << "and one without a texture";
+  EXPECT_THROW(of(66).load(folder), InputError);
+  EXPECT_NO_THROW(of(66).load(folder, {.large = true}));
+}
+
 TEST_F(Import, LightsHaveGltfUnitsAndCones) {
   GltfBuilder b = oneTriangle();
   b.json["extensions"]["KHR_lights_punctual"]["lights"] = {
