@@ -243,6 +243,7 @@ uint32_t importMaterial(Import& import, int index) {
     out.metalness = 0;
     out.roughnessMetalnessTexture = out.normalTexture = {};
     out.dielectricLobe = 0;
+    import.counted["material(s) with KHR_materials_unlit shown lit"]++;
   } else {
     importDielectric(import, in, place, out);
     coated = importCoat(import, in, out);

@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/free_memory.h"
+#include "engine/core/memory.h"
 #include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
 #include "gi/contract/frame_outputs.h"
@@ -165,9 +166,18 @@ LightProvider& GiFrame::Kept::technique() {
 
 /// Before more lights are asked for than memory holds.
 void GiFrame::Kept::refuseBeyondMemory(const Settings& asked) {
-  const double bytes = needsOf(asked).sampled() ? bytesOfVpls(asked.smc, asked.vpl) : 0;
-  if (bytes > bytesOfLights) lambent::refuseBeyondMemory(asked.smc, asked.vpl, freeMemory());
-  bytesOfLights = bytes;
+  const Needs needs = needsOf(asked);
+  const double lights = needs.sampled() ? bytesOfVpls(asked.smc, asked.vpl) : 0, texel = 2;
+  const double maps = needs.sampled() && needs.maps && context.drawnByCpu
+                          ? texel * asked.smc.vpls * asked.shadow.resolution * asked.shadow.resolution
+                          : 0;
+  if (lights + maps > bytesOfLights) {
+    lambent::refuseBeyondMemory(asked.smc, asked.vpl, freeMemory());
+    if (maps > double(freeMemory()))
+      throw InputError("settings",
+                       "smc.vpls and shadow.resolution ask for " + moreThanIsLeft(maps, "lower one of them"));
+  }
+  bytesOfLights = lights + maps;
 }
 
 /// New figures; the first time, how GPU times are taken; everything from scratch for another scene.

@@ -148,11 +148,13 @@ void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   slots_ = 0, resolution_ = 0; // where they cannot be had, whoever goes on with less has them made
   // Each array alone may fit: together they are filled frame by frame, when it is too late to refuse.
   const double bytes = 2.0 * double(in.poses.size()) * in.resolution * in.resolution;
+  const std::string asked = stage_ == StageId::EmitterMaps ? "shadow.emitterSamples, shadow.emitterResolution"
+                                                           : "smc.vpls, shadow.resolution";
   if (context_.drawnByCpu && bytes > double(freeMemory()))
     throw RunError("graphics memory: shadow maps of " + std::to_string(in.poses.size()) + " lights need " +
-                   moreThanIsLeft(bytes, "fewer lights or texels"));
+                   moreThanIsLeft(bytes, "lower " + asked));
   for (size_t i = 0; i < needed; ++i)
-    arrays_.emplace_back(name_ + "/array " + std::to_string(i),
+    arrays_.emplace_back(name_ + " (" + asked + ")/array " + std::to_string(i),
                          gl::TextureDesc{.kind = gl::TextureKind::Array,
                                          .format = GL_DEPTH_COMPONENT16,
                                          .width = in.resolution,

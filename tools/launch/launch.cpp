@@ -160,7 +160,7 @@ std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std:
 /// A shot is a file of somebody's too: what its settings ask for beside the defaults is bounded, numbers of lights,
 /// paths and frames times each other, texels squared.
 void refuseHeavyShot(const Shot& shot, const std::string& file) {
-  constexpr double kMost = 64;     // of what a default frame takes
+  constexpr double kMost = 16;     // of what a default frame takes
   constexpr double kOfNone = 1024; // what stands for a default of 0: no limit, or by the view
   Settings settings;
   for (const auto& [name, value] : shot.set) applySetting(settings, name, value);
@@ -170,7 +170,8 @@ void refuseHeavyShot(const Shot& shot, const std::string& file) {
     if (row.kind != SettingKind::Whole) continue;
     const double more = row.get(settings) / (row.standard > 0 ? row.standard : kOfNone);
     if (!(more > 1)) continue;
-    work *= row.unit == std::string_view("texels") ? more * more : more;
+    const std::string_view unit = row.unit;
+    work *= unit == "texels" || unit == "lights" ? more * more : more;
     names += (names.empty() ? "" : ", ") + row.name;
   }
   if (work <= kMost) return;

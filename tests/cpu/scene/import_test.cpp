@@ -596,6 +596,7 @@ TEST_F(Import, UnlitIsALambertSurfaceOfItsColour) {
   expectNear(unlit.baseColor, {0.5f, 0.25f, 1});
   EXPECT_FALSE(unlit.glossy()) << "glTF's default is a metal";
   EXPECT_EQ(unlit.dielectricLobe, 0);
+  EXPECT_TRUE(std::ranges::any_of(scene.warnings, [](const std::string& w) { return w.ends_with("shown lit"); }));
 }
 
 /// The same triangle baked into a place far off, and moved back by its node: what rays and shaders get is small
