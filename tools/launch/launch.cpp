@@ -157,8 +157,8 @@ std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std:
   return notes;
 }
 
-/// A shot is a file of somebody's too: what its settings ask for beside the defaults is bounded, numbers of lights,
-/// paths and frames times each other, texels squared.
+/// A shot is a file of somebody's too: what its settings ask for beside the defaults is bounded. Numbers of paths, rays
+/// and frames count times each other; those of lights and texels squared.
 void refuseHeavyShot(const Shot& shot, const std::string& file) {
   constexpr double kMost = 16;     // of what a default frame takes
   constexpr double kOfNone = 1024; // what stands for a default of 0: no limit, or by the view
