@@ -148,7 +148,7 @@ LAMBENT_API lambent_status lambent_texture_create(lambent_device* device, lamben
 LAMBENT_API lambent_status lambent_texture_destroy(lambent_device* device, lambent_scene scene,
                                                    lambent_texture texture);
 
-/* What light paths see of a surface: Lambert, albedo = base_color × texture × vertex colour; both sides reflect. */
+/* What light and eyes see of a surface: Lambert, albedo = base_color × texture × vertex colour; both sides reflect. */
 typedef struct lambent_material_desc {
   size_t size;
   float base_color[3];          /* default 0.8 */

@@ -13,8 +13,8 @@ void makeFolder(const std::filesystem::path& folder);
 
 /// Checks before long work that a file can be written. Throws RunError where it cannot: no such folder, one that is not
 /// writable, a folder by its name, a pipe that nobody reads within a second; InputError where it is kept, a link in a
-/// folder of results, or somebody's (replaceOnlyOwnIn). A pipe stays open until the program ends, or its reader would be
-/// at its end before.
+/// folder of results, or somebody's (replaceOnlyOwnIn). A pipe stays open until the program ends, or its reader would
+/// be at its end before.
 void checkWritable(const std::filesystem::path& file);
 
 /// Whether two names are of one file, or would be once it is written.
@@ -46,9 +46,9 @@ void writeAtomically(const std::filesystem::path& file, const std::function<void
 /// The same for a file of these bytes.
 void writeAtomically(const std::filesystem::path& file, std::string_view bytes);
 
-/// Keeps others who ask for it out of a folder while it lives. Waits a second for them, and then no longer: a program that
-/// is stopped holds nobody up. Of some that write `inTurn` it waits until nothing in the folder has changed for a second,
-/// ten at most. Nothing where the disk knows no locks.
+/// Keeps others who ask for it out of a folder while it lives. Waits a second for them, and then no longer: a program
+/// that is stopped holds nobody up. Of some that write `inTurn` it waits until nothing in the folder has changed for a
+/// second, ten at most. Nothing where the disk knows no locks.
 class FolderLock {
  public:
   explicit FolderLock(const std::filesystem::path& folder, bool inTurn = false);

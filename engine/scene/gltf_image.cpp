@@ -140,8 +140,8 @@ size_t scansOf(Bytes bytes) {
 /// without loss the picture before it is written.
 size_t workingBytes(Bytes bytes) { return isWebp(bytes) ? 4 : !isJpeg(bytes) ? 0 : scansOf(bytes) > 1 ? 16 : 6; }
 
-/// Why the image cannot be decoded; empty: it may be. `passed`: texels that the file's JPEGs pass over in more passes
-/// than are usual, so far.
+/// Why the image cannot be decoded; empty: it may be. `passed` sums over the file's JPEGs the texels that their passes
+/// beyond the usual ones go over.
 std::string defectOf(Bytes bytes, int& width, int& height, uint64_t& passed) {
   int channels = 0;
   if (bytes.size == 0) return "cannot be read (no such file, or it is empty)";

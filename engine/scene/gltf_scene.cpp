@@ -9,7 +9,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace lambent {
 
@@ -285,20 +284,6 @@ void bringMeshesHome(Scene& scene) {
     if (far[i]) countFromMiddle(scene.assets.meshes[i]);
 }
 
-/// A first frame casts 30 million rays.
-void refuseSlowRays(const Scene& scene, const RayWork& work) {
-  constexpr float kMost = 150; // see decisions.md
-  if (work.sum() <= kMost) return;
-  const dvec3 at = dvec3(work.place) + scene.origin;
-  std::ostringstream text;
-  text << "every ray looks at " << std::lround(work.sum()) << " triangles in the mean";
-  if (work.cutOut >= 1)
-    text << ", " << std::lround(work.cutOut) << " that are cut out, blended or hidden backs counted 7 times";
-  text << " (most from " << at.x << ", " << at.y << ", " << at.z
-       << "): pictures would take very long; thin them out, or --allow-large";
-  throw InputError(scene.file.string(), text.str());
-}
-
 /// A driver that draws on the CPU compiles programs anew for each way in which their textures are sampled: 0.15 s.
 void refuseManySamplings(const Scene& scene) {
   constexpr size_t kMost = 64;
@@ -367,21 +352,13 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
   bringMeshesHome(scene);
   if (!trust.large) refuseManySamplings(scene);
   if (!trust.large) refuseManyLights(scene, import.doc.budget.shown, import.doc.budget.read);
-  const RayWork work = rayWork(scene);
-  if (!trust.large) refuseSlowRays(scene, work);
-  scene.rayWork = work.sum();
+  requireQuickRays(scene, trust);
   size_t far = 0;
   scene.registry.each<MeshInstance, WorldTransform>(
       [&](Entity e, const MeshInstance& m, const WorldTransform& w) { far += poseOf(scene, e, m, w).has_value(); });
   forEachPosed(scene, [&](const Mesh&, const DeformedMesh*, const mat4&) { --far; });
   if (far > 0) scene.warnings.push_back(std::to_string(far) + " object(s) that reach beyond 1e12 m left out");
   return scene;
-}
-
-void requireQuickRays(Scene& scene, const CameraView& camera, FileTrust trust) {
-  const RayWork work = rayWork(scene, camera);
-  if (!trust.large) refuseSlowRays(scene, work);
-  scene.rayWork = std::max(scene.rayWork, work.sum());
 }
 
 } // namespace lambent

@@ -1,5 +1,6 @@
 #include "engine/scene/ray_work.h"
 
+#include "engine/core/error.h"
 #include "engine/core/rng.h"
 #include "engine/core/sampling.h"
 #include "engine/scene/placed_triangles.h"
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 #include <unordered_map>
 
 namespace lambent {
@@ -290,7 +292,11 @@ RayWork workOf(const Scene& scene, const CameraView& camera, bool surfaces) {
       // anything. What it passes itself counts alone.
       const bool fromCamera = ray.walk == kFromCamera;
       if (ray.full || (fromCamera ? step == 2 : step > 0 || !ends(ray))) walks[ray.walk].add(ray);
-      if (ray.looks && !ray.full) walks[kThroughBacks].add({.origin = ray.origin, .passed = ray.passed});
+      if (ray.looks && !ray.full) {
+        Ray passes;
+        passes.origin = ray.origin, passes.passed = ray.passed;
+        walks[kThroughBacks].add(passes);
+      }
       if (!ends(ray)) continue;
       const size_t sent = !fromCamera ? 1 : step == 0 ? kSent : 1 + 2 * wanted / (1 + met);
       for (size_t i = 0; i < sent; ++i) {
@@ -305,6 +311,25 @@ RayWork workOf(const Scene& scene, const CameraView& camera, bool surfaces) {
                           &RayWork::sum);
 }
 
+/// A first frame casts 30 million rays.
+void refuseSlowRays(const Scene& scene, const RayWork& work) {
+  constexpr float kMost = 150; // see decisions.md
+  if (work.sum() <= kMost) return;
+  const dvec3 at = dvec3(work.place) + scene.origin;
+  std::ostringstream text;
+  text << "every ray looks at " << std::lround(work.sum()) << " triangles in the mean";
+  if (work.cutOut >= 1)
+    text << ", " << std::lround(work.cutOut) << " that are cut out, blended or hidden backs counted 7 times";
+  text << " (most from " << at.x << ", " << at.y << ", " << at.z
+       << "): pictures would take very long; thin them out, or --allow-large";
+  throw InputError(scene.file.string(), text.str());
+}
+
+void require(Scene& scene, const RayWork& work, FileTrust trust) {
+  if (!trust.large) refuseSlowRays(scene, work);
+  scene.rayWork = std::max(scene.rayWork, work.sum());
+}
+
 } // namespace
 
 RayWork rayWork(const Scene& scene) {
@@ -313,5 +338,10 @@ RayWork rayWork(const Scene& scene) {
 }
 
 RayWork rayWork(const Scene& scene, const CameraView& camera) { return workOf(scene, camera, false); }
+
+void requireQuickRays(Scene& scene, FileTrust trust) { require(scene, rayWork(scene), trust); }
+void requireQuickRays(Scene& scene, const CameraView& camera, FileTrust trust) {
+  require(scene, rayWork(scene, camera), trust);
+}
 
 } // namespace lambent

@@ -26,4 +26,9 @@ RayWork rayWork(const Scene& scene);
 /// The same of what one camera shows alone.
 RayWork rayWork(const Scene& scene, const CameraView& camera);
 
+/// Throws InputError where rays would take too long, unless the file is trusted; notes what they take in the scene's
+/// rayWork. loadScene asks for the scene, with its file's first camera; others that are looked through are asked for.
+void requireQuickRays(Scene& scene, FileTrust trust);
+void requireQuickRays(Scene& scene, const CameraView& camera, FileTrust trust);
+
 } // namespace lambent

@@ -50,10 +50,6 @@ using LoadStep = std::function<void(const char* at, float share)>;
 Scene loadScene(const std::filesystem::path& file, const std::string& sceneName = {}, const LoadStep& step = {},
                 FileTrust trust = {});
 
-/// Throws InputError where rays from what `camera` shows would take too long, as loadScene does for the file's first
-/// one, unless the file is trusted; notes what they take in the scene's rayWork.
-void requireQuickRays(Scene& scene, const CameraView& camera, FileTrust trust);
-
 /// Poses every animated node at `time` (seconds, clips loop) and updates world transforms down the hierarchy.
 void animate(Scene& scene, double time);
 /// Updates world transforms only: for callers that changed Transform components themselves.

@@ -51,4 +51,17 @@ Glow glowOnSeen(const RayQuery& rays, const CameraView& camera) {
   return {float(shown / double(seen)), float(reaches / (double(seen) * kDirections))};
 }
 
+float shareLookedThrough(const RayQuery& rays, const CameraView& camera) {
+  constexpr int kAcross = 16;
+  int met = 0, through = 0;
+  for (int i = 0; i < kAcross * kAcross; ++i) {
+    const vec2 at = (vec2(i % kAcross, i / kAcross) + 0.5f) / float(kAcross);
+    const CameraRay way = cameraRay(camera, at.x, at.y);
+    const SurfaceHit hit = rays.closest(Ray{way.origin, way.direction});
+    met += hit.valid();
+    through += hit.valid() && rays.seen(Ray{way.origin, way.direction}).t != hit.t;
+  }
+  return met > 0 ? float(through) / float(met) : 0;
+}
+
 } // namespace lambent

@@ -17,4 +17,7 @@ struct Glow {
 /// The same for the same scene.
 Glow glowOnSeen(const RayQuery& rays, const CameraView& camera);
 
+/// Returns the share of what lies before a camera that it looks through, backs that are hidden; 0: nothing lies there.
+float shareLookedThrough(const RayQuery& rays, const CameraView& camera);
+
 } // namespace lambent

@@ -77,8 +77,8 @@ struct LampAim {
   }
 };
 
-/// Aims from three radii off, of a scene that it stands in from twelve, and goes on to two. Keeps `previous` while it
-/// covers the receivers and is not more than twice as large as needed, so that a slow camera redraws nothing. (All
+/// Aims where the lamp is three radii off, twelve within its scene, and keeps that down to two. Keeps `previous` while
+/// it covers the receivers and is not more than twice as large as needed, so that a slow camera redraws nothing. (All
 /// around, a texel of 320×240 is 4 m wide at 300 m: what is smaller threw no shadow.)
 LampAim aimAt(const LightView& light, const Aabb& receivers, const Aabb& casters, const LampAim& previous) {
   constexpr float kBegins = 3, kBeginsWithin = 12, kEnds = 2, kSpare = 1.1f, kLoosest = 2;

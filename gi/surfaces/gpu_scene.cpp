@@ -180,7 +180,7 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
     }
     if (!anyMaterial) bindMaterial(item.range.material);
     culled ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
-    glCullFace(item.mirrored ? GL_FRONT : GL_BACK);
+    if (culled) glCullFace(item.mirrored ? GL_FRONT : GL_BACK);
     glBindVertexArray(item.deformed ? deformed_.array.name() : vertexArray_.name());
     gl::drawIndexed(slice, first, end - first);
     ++draws;

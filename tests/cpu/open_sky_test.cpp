@@ -53,4 +53,19 @@ TEST(OpenSky, ReachesUnderABalconyByTheFloorBeforeIt) {
   EXPECT_TRUE(reaches(scene, {-3.5f, 0.3f, 0}));
 }
 
+/// Half of the picture is a sheet that is seen from behind, before a floor; the sky is not looked through.
+TEST(OpenSky, TellsWhatTheEyeLooksThrough) {
+  HandScene scene;
+  const uint32_t hidden = scene.material(vec3(0.5f));
+  scene.assets.materials[hidden].backHidden = true;
+  scene.quad({-9, -9, -4}, {18, 0, 0}, {0, 18, 0}, scene.material(vec3(0.5f)));
+  const auto share = [&] { return shareLookedThrough(TracedScene(scene).rays, cameraAlong(vec3(0), {0, 0, -1})); };
+  EXPECT_EQ(share(), 0);
+  scene.quad({0, -9, -2}, {0, 18, 0}, {9, 0, 0}, hidden);
+  EXPECT_EQ(share(), 0.5f);
+  scene.assets.materials[hidden].backHidden = false;
+  EXPECT_EQ(share(), 0);
+  EXPECT_EQ(shareLookedThrough(TracedScene(scene).rays, cameraAlong(vec3(0), {0, 0, 1})), 0);
+}
+
 } // namespace lambent::test::open_sky_test

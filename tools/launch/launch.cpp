@@ -9,7 +9,8 @@
 #include "engine/core/resources.h"
 #include "engine/core/text.h"
 #include "engine/gl/program.h"
-#include "engine/trace/embree_query.h"
+#include "engine/scene/ray_work.h"
+#include "engine/trace/open_sky.h"
 #include "game/rules/props.h"
 #include "gi/plan/presets.h"
 #include "tools/launch/launch_light.h"
@@ -125,20 +126,9 @@ void tellOfSlowRays(LaunchContext& stage, float rayWork) {
 }
 
 /// Where the eye looks through most of what is before it, the picture is not what the person expects.
-void tellOfHiddenBacks(LaunchContext& stage, const SceneView& view) {
-  constexpr int kAcross = 16;
-  if (std::ranges::none_of(view.assets->materials, &Material::backHidden)) return;
-  EmbreeQuery rays(*view.assets);
-  rays.update(view);
-  int met = 0, through = 0;
-  for (int i = 0; i < kAcross * kAcross; ++i) {
-    const vec2 at = (vec2(i % kAcross, i / kAcross) + 0.5f) / float(kAcross);
-    const CameraRay way = cameraRay(view.camera, at.x, at.y);
-    const SurfaceHit hit = rays.closest(Ray{way.origin, way.direction});
-    met += hit.valid();
-    through += hit.valid() && rays.seen(Ray{way.origin, way.direction}).t != hit.t;
-  }
-  if (2 * through > met)
+void tellOfHiddenBacks(LaunchContext& stage, RaysOnce& rays) {
+  if (std::ranges::none_of(stage.scene.assets.materials, &Material::backHidden)) return;
+  if (2 * shareLookedThrough(rays(), rays.view().camera) > 1)
     stage.notes.push_back("the camera looks through surfaces that are shown from their fronts alone (--two-sided shows "
                           "their backs)");
 }
@@ -366,9 +356,10 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
   tell("light");
   SceneExtractor probe;
   const SceneView view = probe.extract(stage->scene, stage->camera, 0);
-  lightWhatIsDark(*stage, options, view);
+  RaysOnce rays(view);
+  lightWhatIsDark(*stage, options, rays);
   tellOfSlowRays(*stage, view.rayWork);
-  tellOfHiddenBacks(*stage, view);
+  tellOfHiddenBacks(*stage, rays);
   tellWhatIsLeftOut(*stage, stage->settings);
   if (stage->shot && !stage->shot->played.empty()) {
     stage->props = std::make_unique<Props>(stage->scene);

@@ -3,7 +3,6 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/scene/sky_file.h"
-#include "engine/trace/embree_query.h"
 #include "engine/trace/open_sky.h"
 #include "gi/plan/techniques.h"
 
@@ -160,26 +159,24 @@ bool hasEmitters(const Scene& scene) {
 
 /// Whether no more than decoration shines (nothing above radiance 1), in the open, and what is seen gets next to
 /// nothing of it.
-bool onlyGlows(const LaunchContext& stage, const SceneView& view) {
+bool onlyGlows(const LaunchContext& stage, RaysOnce& rays) {
+  const SceneView& view = rays.view();
   if (!view.lights.empty() || !view.sky.black()) return false;
   for (const Material& m : stage.scene.assets.materials)
     if (maxComponent(m.emission) > 1) return false;
   const std::vector<NamedCamera> cameras = sceneCameras(stage.scene); // not the person's: all views are lit alike
   const CameraView from = cameras.empty() ? defaultView(stage.scene) : cameras[0].view;
-  EmbreeQuery rays(stage.scene.assets);
-  rays.update(view);
-  if (!skyReaches(rays, from.position())) return false;
-  const Glow glow = glowOnSeen(rays, from);
+  if (!skyReaches(rays(), from.position())) return false;
+  const Glow glow = glowOnSeen(rays(), from);
   constexpr float kMostShown = 0.1f, kDark = 0.01f;
   return glow.shown < kMostShown && glow.reaches < kDark;
 }
 
 /// Whether the sky is to be seen from the camera, or lights what is; else adds a lamp by the camera, for a sun would
 /// leave a closed room black. `lack`: what the scene is without.
-bool isOpenOrHasLamp(LaunchContext& stage, const SceneView& view, const std::string& lack) {
-  EmbreeQuery rays(stage.scene.assets);
-  rays.update(view);
-  if (skyReaches(rays, view.camera.position())) return true;
+bool isOpenOrHasLamp(LaunchContext& stage, RaysOnce& rays, const std::string& lack) {
+  const SceneView& view = rays.view();
+  if (skyReaches(rays(), view.camera.position())) return true;
   const float size = view.boundsWorld.diameter();
   LightView light;
   light.position = view.camera.position() + vec3(view.camera.worldFromView[1]) * 0.01f * size;
@@ -201,14 +198,15 @@ void addGivenLights(LaunchContext& stage, const LaunchOptions& options) {
   if (!options.daylight.empty()) replaceDaylight(stage, options);
 }
 
-void lightWhatIsDark(LaunchContext& stage, const LaunchOptions& options, const SceneView& view) {
+void lightWhatIsDark(LaunchContext& stage, const LaunchOptions& options, RaysOnce& rays) {
+  const SceneView& view = rays.view();
   if (!options.sky.empty()) return; // which is what there shall be
   const bool lit = !view.lights.empty() || !view.sky.black() || hasEmitters(stage.scene);
-  if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, view, "light")) {
+  if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, rays, "light")) {
     addSkyAndSun(stage.scene, {}, sunRadius(options, kSunRadius));
     stage.notes.push_back(
         "the scene has no light: added a clear sky and its sun (--daylight 60; --sky 0,0,0 leaves it dark)");
-  } else if (lit && onlyGlows(stage, view)) {
+  } else if (lit && onlyGlows(stage, rays)) {
     addSkyAndSun(stage.scene, {}, sunRadius(options, kSunRadius));
     stage.notes.push_back("what shines in the scene hardly lights it: added a clear sky and its sun (--daylight 60; "
                           "--sky 0,0,0 leaves it as it is)");
@@ -232,7 +230,8 @@ void needPunctualLight(LaunchContext& stage) {
   const SceneView view = probe.extract(stage.scene, stage.camera, 0);
   const bool lit = std::any_of(view.lights.begin(), view.lights.end(),
                                [](const LightView& light) { return maxComponent(light.intensity) > 0; });
-  if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, view, "punctual light")) {
+  RaysOnce rays(view);
+  if (!lit && !view.instances.empty() && isOpenOrHasLamp(stage, rays, "punctual light")) {
     addSun(stage.scene, {}, 0);
     stage.notes.push_back("the scene has no punctual light: added a sun (--sun)");
   }
