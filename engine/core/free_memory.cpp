@@ -5,6 +5,9 @@
 #include <limits>
 #include <string>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 namespace lambent {
 
 namespace {
@@ -29,6 +32,25 @@ size_t freeMemory() {
     if (name == "MemAvailable:") free = kib << 10;
   }
   return std::min(free, freeOfGroup("/sys/fs/cgroup"));
+}
+
+AllocationLimit::AllocationLimit(size_t bytes) {
+  static std::mutex one;
+  alone_ = std::unique_lock(one);
+  const size_t pages = numberIn("/proc/self/statm"); // of addresses, which is what the system counts
+  rlimit limit{};
+  if (pages == kUnknown || getrlimit(RLIMIT_AS, &limit) != 0) return;
+  const uint64_t most = pages * uint64_t(sysconf(_SC_PAGESIZE)) + bytes, before = limit.rlim_cur;
+  if (most >= before) return;
+  limit.rlim_cur = most;
+  if (setrlimit(RLIMIT_AS, &limit) == 0) before_ = before;
+}
+
+AllocationLimit::~AllocationLimit() {
+  rlimit limit{};
+  if (!before_ || getrlimit(RLIMIT_AS, &limit) != 0) return;
+  limit.rlim_cur = *before_;
+  setrlimit(RLIMIT_AS, &limit);
 }
 
 size_t freeOfGroup(const std::filesystem::path& folder) {

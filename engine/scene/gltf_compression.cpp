@@ -2,6 +2,8 @@
 // take the memory that these name.
 #include "engine/scene/gltf_compression.h"
 
+#include "engine/core/free_memory.h"
+
 #include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
 #include <draco/compression/mesh/mesh_sequential_decoder.h>
 #include <meshoptimizer.h>
@@ -13,6 +15,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <new>
+#include <optional>
 #include <span>
 
 namespace lambent::gltf {
@@ -132,11 +136,14 @@ DracoHead dracoHead(Bytes bytes) {
   return head;
 }
 
+using Spend = std::function<void(size_t attributes, size_t bytesOfPoint)>;
+
 /// A decoder of the library's that asks before it takes memory for the stream's attributes, which may be many and wide,
-/// and none of them the file's. `spend` is called with bytes of each point, and throws where these are too many.
+/// and none of them the file's. `spend` is called with their number and bytes of each point, and throws where these are
+/// too many.
 template <class Method> class AskingDecoder : public Method {
  public:
-  explicit AskingDecoder(std::function<void(size_t)> spend) : spend_(std::move(spend)) {}
+  explicit AskingDecoder(Spend spend) : spend_(std::move(spend)) {}
 
  protected:
   bool DecodeAllAttributes() override {
@@ -146,17 +153,16 @@ template <class Method> class AskingDecoder : public Method {
       const draco::PointAttribute& a = *this->point_cloud()->attribute(i);
       bytes += size_t(a.num_components()) * (size_t(draco::DataTypeLength(a.data_type())) + kOfValue);
     }
-    spend_(bytes);
+    spend_(size_t(this->point_cloud()->num_attributes()), bytes);
     return Method::DecodeAllAttributes();
   }
 
  private:
-  std::function<void(size_t)> spend_;
+  Spend spend_;
 };
 
 /// The mesh of a stream whose head is known.
-template <class Method>
-std::unique_ptr<draco::Mesh> decodeMesh(Bytes bytes, const std::function<void(size_t)>& spend, std::string& defect) {
+template <class Method> std::unique_ptr<draco::Mesh> decodeMesh(Bytes bytes, const Spend& spend, std::string& defect) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data), bytes.size);
   auto mesh = std::make_unique<draco::Mesh>();
@@ -318,11 +324,27 @@ void decodePrimitive(Document& doc, tinygltf::Primitive& primitive, const std::s
   constexpr size_t kBytesPerCorner = 64, kBytesPerTable = 8;
   doc.spend(most, kBytesPerCorner + kBytesPerTable * size_t(head.tables), place);
 
-  const auto spend = [&](size_t bytesOfPoint) { doc.spend(most, bytesOfPoint, place); };
+  const Spend spend = [&](size_t attributes, size_t bytesOfPoint) {
+    doc.budget.decoded += attributes;
+    if (doc.budget.decodesTooMuch())
+      doc.fail(place, "brings the attributes that are decoded to " + std::to_string(doc.budget.decoded) +
+                          ": more than a file of " + std::to_string(doc.budget.read) + " bytes may ask for (" +
+                          std::to_string(doc.budget.decodedLimit()) + "; --allow-large lets it)");
+    doc.spend(most, bytesOfPoint, place);
+  };
   std::string defect;
-  const std::unique_ptr<draco::Mesh> mesh = head.sequential
-                                                ? decodeMesh<draco::MeshSequentialDecoder>(bytes, spend, defect)
-                                                : decodeMesh<draco::MeshEdgebreakerDecoder>(bytes, spend, defect);
+  std::unique_ptr<draco::Mesh> mesh;
+  try {
+    // Symbols of which no value is made: up to 64 for each byte of the stream, before any is looked at.
+    constexpr size_t kBytesOfSymbols = 64 * 12;
+    std::optional<AllocationLimit> limit;
+    if (bytes.size > doc.budget.left() / kBytesOfSymbols) limit.emplace(doc.budget.left());
+    mesh = head.sequential ? decodeMesh<draco::MeshSequentialDecoder>(bytes, spend, defect)
+                           : decodeMesh<draco::MeshEdgebreakerDecoder>(bytes, spend, defect);
+  } catch (const std::bad_alloc&) {
+    doc.fail(place, "needs more memory than a file of " + std::to_string(doc.budget.read) +
+                        " bytes may ask for (--allow-large lets it)");
+  }
   if (!defect.empty()) doc.fail(place, "is damaged: " + defect);
   const size_t points = mesh->num_points();
 

@@ -48,6 +48,13 @@ struct Budget {
   size_t shown = 0;
   bool showsTooMuch() const { return !trusted && shown > shownLimit(); }
   size_t shownLimit() const { return kShownBase + kShownPerByte * read; }
+
+  /// Attributes that are decoded from Draco, those too that nothing uses: of 18 bytes each may have a table that takes
+  /// 0.4 ms to build.
+  static constexpr size_t kDecodedBase = 25000;
+  size_t decoded = 0;
+  bool decodesTooMuch() const { return !trusted && decoded > decodedLimit(); }
+  size_t decodedLimit() const { return kDecodedBase * std::max<size_t>(1, read / kSmall); }
 };
 
 struct MaterialFactors {

@@ -1,11 +1,14 @@
 // Geometry and pictures that a file holds compressed are what they were, and those that are damaged or lie are refused.
 #include "engine/core/error.h"
 #include "tests/cpu/scene/support.h"
+#include "tests/support/effort.h"
 
 #include <draco/compression/encode.h>
 #include <draco/mesh/triangle_soup_mesh_builder.h>
 #include <meshoptimizer.h>
 #include <webp/encode.h>
+
+#include <sys/resource.h>
 
 namespace lambent::test::compression_test {
 
@@ -336,6 +339,55 @@ TEST(Compression, DracoAttributesAreCountedBeforeTheyAreDecoded) {
   const TemporaryFolder folder;
   const std::string why = refusal([&] { b.load(folder); });
   EXPECT_NE(why.find("Draco: needs more memory than a file of"), std::string::npos) << why;
+}
+
+/// Attributes of 18 bytes build tables of a million entries, and one may name 64 symbols for each of its bytes: neither
+/// is counted by what it brings.
+TEST(Compression, DracoIsHeldToWhatItsSizeExplains) {
+  const auto number = [](std::vector<uint8_t>& to, size_t n) {
+    for (; n > 127; n >>= 7) to.push_back(uint8_t(n & 127) | 128);
+    to.push_back(uint8_t(n));
+  };
+  const auto refusalOf = [&](size_t attributes, const std::vector<uint8_t>& symbols, bool large = false) {
+    std::vector<uint8_t> stream{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0,
+                                0,   0,   1,   3,   1,   0, 1, 2, 1}; // a triangle, a decoder
+    number(stream, 1 + attributes);
+    stream.insert(stream.end(), {0, 9, 3, 0, 0}); // positions, three floats
+    for (size_t i = 0; i < attributes; ++i) {
+      stream.insert(stream.end(), {4, 5, 1, 0}); // an integer
+      number(stream, i + 1);
+    }
+    stream.push_back(0); // positions as they are, integers as symbols
+    stream.insert(stream.end(), attributes, 1);
+    stream.insert(stream.end(), 36, 0);
+    for (size_t i = 0; i < attributes; ++i) {
+      stream.insert(stream.end(), {0xfe, 1});
+      stream.insert(stream.end(), symbols.begin(), symbols.end());
+    }
+    GltfBuilder b;
+    const int view = b.view(stream);
+    nlohmann::json primitive = {{"attributes", {{"POSITION", b.accessor(-1, 5126, "VEC3", 3)}}}};
+    primitive["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view}, {"attributes", {{"POSITION", 0}}}};
+    b.addMeshNode(primitive);
+    const TemporaryFolder folder;
+    return refusal([&] { b.load(folder, {.large = large}); });
+  };
+  const std::vector<uint8_t> wide{1, 18, 1, 2, 0, 0x40, 1, 0}; // 18 bits, a symbol that is certain, no bits of values
+  EXPECT_EQ(refusalOf(5, wide), "");
+  const std::string many = refusalOf(26000, wide);
+  EXPECT_NE(many.find("attributes that are decoded to 26001"), std::string::npos) << many;
+  SKIP_STATISTICS_WHEN_SANITIZED(); // which end a program that gets no memory
+  constexpr size_t kBytes = 2800000;
+  std::vector<uint8_t> named{1, 18};
+  number(named, 64 * kBytes);
+  named.insert(named.end(), kBytes, 255);
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  const std::string symbols = refusalOf(1, named);
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_NE(symbols.find("needs more memory than a file of"), std::string::npos) << symbols;
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 900 << 10) << "KiB";
+  EXPECT_NO_THROW(std::vector<char>(size_t(1) << 30)) << "the limit has gone";
 }
 
 /// Nor may edgebreaker's decoders of attributes, of which each has a table of all corners. The stream ends there.
