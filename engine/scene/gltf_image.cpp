@@ -1,5 +1,6 @@
 // Encoded images to RGBA8 texels, several at a time.
 
+#include "engine/core/free_memory.h"
 #include "engine/core/parallel.h"
 #include "engine/scene/gltf_import.h"
 
@@ -11,7 +12,9 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <string_view>
 
 #include <png.h>
 #include <stb/stb_image.h>
@@ -118,7 +121,7 @@ Texels decodeTexels(Bytes bytes, int& width, int& height, std::string& defect) {
   }
   if (isWebp(bytes)) {
     Texels texels{WebPDecodeRGBA(bytes.data, bytes.size, &width, &height), {WebPFree}};
-    if (!texels) defect = "cannot be decoded: damaged WebP";
+    if (!texels) defect = "cannot be decoded: damaged WebP, or one that needs more memory than the file may ask for";
     return texels;
   }
   int channels = 0;
@@ -139,6 +142,15 @@ size_t scansOf(Bytes bytes) {
 /// Bytes of a texel that decoding takes beside the texels. A JPEG of several passes keeps what they add up, a WebP
 /// without loss the picture before it is written.
 size_t workingBytes(Bytes bytes) { return isWebp(bytes) ? 4 : !isJpeg(bytes) ? 0 : scansOf(bytes) > 1 ? 16 : 6; }
+
+/// Bytes that the decoder of a WebP without loss, or of its alpha, takes at most for tables of codes: by libwebp 1.2
+/// some 5 KiB for 16 texels, and for 4 bytes of the file, which nothing of the picture's size tells.
+size_t tableBytes(Bytes bytes, const glm::ivec2& size) {
+  constexpr size_t kTable = 5500;
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data), isWebp(bytes) ? bytes.size : 0);
+  if (text.find("VP8L") == text.npos && text.find("ALPH") == text.npos) return 0;
+  return kTable * std::min(size_t(size.x) * size_t(size.y) / 16, bytes.size / 4);
+}
 
 /// Why the image cannot be decoded; empty: it may be. `passed` sums over the file's JPEGs the texels that their passes
 /// beyond the usual ones go over.
@@ -223,11 +235,27 @@ void decodeImages(Import& import) {
   std::ranges::partial_sort(working, working.begin() + std::ptrdiff_t(atOnce), std::greater());
   for (size_t i = 0; i < atOnce; ++i) doc.spend(working[i].first, 1, working[i].second);
   std::atomic<size_t> done = 0;
+  std::mutex mutex;
+  std::vector<size_t> alone; // whose tables may be large
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
     import.tell("textures", Import::kMeshes, 1, done++, order.size());
-    for (size_t i = begin; i < end; ++i)
-      if (defects[i].empty()) images[i] = decode(doc, order[i].first, order[i].second, sizes[i], defects[i]);
+    for (size_t i = begin; i < end; ++i) {
+      if (!defects[i].empty()) continue;
+      constexpr size_t kLarge = 64 << 20;
+      if (tableBytes(encodedBytes(doc, order[i].first), sizes[i]) > kLarge) {
+        const std::scoped_lock lock(mutex);
+        alone.push_back(i);
+      } else {
+        images[i] = decode(doc, order[i].first, order[i].second, sizes[i], defects[i]);
+      }
+    }
   });
+  std::ranges::sort(alone);
+  for (const size_t i : alone) {
+    constexpr size_t kPerTexel = 2 * sizeof(u8vec4) + 4; // charged, not yet taken
+    const AllocationLimit limit(doc.budget.left() + kPerTexel * size_t(sizes[i].x) * size_t(sizes[i].y));
+    images[i] = decode(doc, order[i].first, order[i].second, sizes[i], defects[i]);
+  }
   for (size_t i = 0; i < order.size(); ++i) {
     const auto [index, srgb] = order[i];
     const tinygltf::Image& image = doc.model.images[size_t(index)];

@@ -95,7 +95,11 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
              (ktx ? " (KTX2; gltf-transform ktxdecompress IN OUT converts it)" : "") + "; white instead");
     return ref;
   }
-  ref.image = import.images.emplace(std::pair(source, srgb), uint32_t(import.images.size())).first->second;
+  const tinygltf::Image& image = doc.model.images[size_t(source)];
+  const bool shared = image.bufferView >= 0 || !image.uri.empty();
+  const int first =
+      shared ? import.pictures.emplace(std::pair(image.bufferView, image.uri), source).first->second : source;
+  ref.image = import.images.emplace(std::pair(first, srgb), uint32_t(import.images.size())).first->second;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = doc.model.samplers[size_t(texture.sampler)];
     warnOfUnknown(doc, sampler, place);

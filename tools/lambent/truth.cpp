@@ -58,6 +58,11 @@ void trackPixels(const ReferenceOptions& options) {
   const uint32_t samples = uint32_t(options.samples.value_or(kDefaultSamples));
   WatchedScene watched(tracked.points);
   RunPlan plan = planOf(*opened, 0);
+  constexpr size_t kMost = 10'000'000; // values, which are kept: 0.5 GB
+  if (!launch.trust.large && tracked.points.size() * size_t(plan.frames) > kMost)
+    throw InputError(launch.scene, "asks for " + std::to_string(tracked.points.size()) + " pixels in " +
+                                       std::to_string(plan.frames) + " frames (" + std::to_string(kMost) +
+                                       " values at most, or --allow-large)");
   plan.view = watchedBy(watched, plan.view);
   plan.points = tracked.points;
   const auto series = run({{"truth", settings, opened->seed, pathsAtPoints(watched, samples, options.clamped)}}, plan,

@@ -131,9 +131,10 @@ TEST_F(BadInput, TexturesAndPictures) {
   GltfBuilder several = b;
   std::string half("\xff\xd8\xff\xc2\x00\x0b\x08\x04\x00\x04\x00\x01\x01\x11\x00", 15); // 1024 each way
   for (int i = 0; i < 4000; ++i) half += std::string("\xff\xda\x00\x08\x01\x01\x00\x01\x01\x00", 10);
-  writeBytes(folder / "half.jpg", half);
+  const auto halfOf = [](int i) { return "half" + std::to_string(i) + ".jpg"; };
   for (int i = 0; i < 3; ++i) {
-    several.json["images"][size_t(i)] = {{"uri", "half.jpg"}};
+    writeBytes(folder / halfOf(i), half);
+    several.json["images"][size_t(i)] = {{"uri", halfOf(i)}};
     several.json["textures"][size_t(i)] = {{"source", i}};
     several.json["materials"][size_t(i)] = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}};
     several.json["meshes"][0]["primitives"][size_t(i)] = several.json["meshes"][0]["primitives"][0];
@@ -141,7 +142,8 @@ TEST_F(BadInput, TexturesAndPictures) {
   }
   const Scene scene = several.load(folder);
   for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(hasWarning(scene, "image " + std::to_string(i) + " 'half.jpg': is a JPEG of 4000 passes"), i == 2);
+    EXPECT_EQ(hasWarning(scene, "image " + std::to_string(i) + " '" + halfOf(i) + "': is a JPEG of 4000 passes"),
+              i == 2);
   // One of a few adds them up in memory of its own: 16 bytes a texel.
   std::string large("\xff\xd8\xff\xc2\x00\x0b\x08\x18\x00\x18\x00\x01\x01\x11\x00", 15); // 6144 each way
   for (int i = 0; i < 2; ++i) large += std::string("\xff\xda\x00\x08\x01\x01\x00\x01\x01\x00", 10);

@@ -411,6 +411,23 @@ TEST(Compression, DracoTablesAreCountedBeforeTheyAreMade) {
   EXPECT_NE(why.find("Draco: needs more memory than a file of"), std::string::npos) << why;
 }
 
+/// 65,536 groups of codes, a table of 5 KiB each, are a file of 300 kB: a picture that many entries name is decoded
+/// once.
+TEST(Compression, PicturesOfSeveralEntriesAreDecodedOnce) {
+  const Hills hills;
+  GltfBuilder b = hills.plain();
+  const int view = b.view(png({255, 0, 188, 255}));
+  for (int i = 0; i < 5; ++i) {
+    b.push("images", {{"bufferView", view}, {"mimeType", "image/png"}});
+    b.push("textures", {{"source", i}});
+    b.push("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+    b.addMeshNode({{"attributes", b.json["meshes"][0]["primitives"][0]["attributes"]}, {"material", i}});
+  }
+  const Scene scene = b.load(TemporaryFolder());
+  EXPECT_EQ(scene.assets.materials.size(), 6u);
+  EXPECT_EQ(scene.assets.images.size(), 1u);
+}
+
 TEST(Compression, WebpIsDecoded) {
   std::vector<uint8_t> texels;
   for (int i = 0; i < 16; ++i)
