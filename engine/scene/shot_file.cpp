@@ -345,6 +345,9 @@ Shot loadShot(const fs::path& file) {
       if (glm::min(uv.x, uv.y) < 0 || glm::max(uv.x, uv.y) > 1) p.fail("is outside the image (0 to 1)");
       shot.pixels.push_back(uv);
     });
+  constexpr size_t kMostPixels = 65536; // all are traced in every frame that is watched
+  if (shot.pixels.size() > kMostPixels)
+    root["pixels"].fail("are " + std::to_string(shot.pixels.size()) + " (" + std::to_string(kMostPixels) + " at most)");
   if (root.has("set"))
     root["set"].members([&](const std::string& key, const Field& value) { shot.set[key] = value.scalarText(); });
   return shot;

@@ -147,42 +147,45 @@ void keepCoverage(const gl::Texture& texture, const TextureImage& image, float c
   glTextureParameteri(texture.name(), GL_TEXTURE_MAX_LEVEL, last);
 }
 
-/// Unit normals between the texels of a normal map, as filters see it: one a quarter off the middle of each.
-std::vector<vec3> normalsOf(const TextureImage& image) {
-  std::vector<vec3> at;
-  for (const u8vec4& t : image.texels) at.push_back(vec3(t) * (2 / 255.0f) - 1.0f);
-  std::vector<vec3> normals;
-  for (int y = 0; y < image.height; ++y) {
-    const vec3 *row = &at[size_t(y) * size_t(image.width)],
-               *other = &at[size_t((y + (y % 2 ? 1 : image.height - 1)) % image.height) * size_t(image.width)];
-    for (int x = 0; x < image.width; ++x) {
-      const int beside = (x + (x % 2 ? 1 : image.width - 1)) % image.width;
-      normals.push_back(unitOr(3.0f * (3.0f * row[x] + row[beside]) + 3.0f * other[x] + other[beside], vec3(0, 0, 1)));
-    }
-  }
-  return normals;
+/// Mean of the unit normals of a block of 2×2 texels, each a quarter of the way to the others, as filters see them. Of
+/// maps one texel wide or high, of what there is.
+vec3 meanOfBlock(const TextureImage& image, int x, int y) {
+  const auto at = [&](int column, int row) {
+    const u8vec4& t = image.texels[size_t(std::min(row, image.height - 1)) * size_t(image.width) +
+                                   size_t(std::min(column, image.width - 1))];
+    return vec3(t.x, t.y, t.z) - 127.5f;
+  };
+  const vec3 a = at(2 * x, 2 * y), b = at(2 * x + 1, 2 * y), c = at(2 * x, 2 * y + 1), d = at(2 * x + 1, 2 * y + 1);
+  const auto near = [](const vec3& own, const vec3& beside, const vec3& below, const vec3& across) {
+    const vec3 n = 9.0f * own + 3.0f * (beside + below) + across;
+    return n * glm::inversesqrt(std::max(glm::dot(n, n), 1e-6f));
+  };
+  return 0.25f * (near(a, b, c, d) + near(b, a, d, c) + near(c, d, a, b) + near(d, c, b, a));
 }
 
 /// Writes into alpha how far the normals of each level's texels differ, as meanNormalLength
 /// (shaders/shared/normal_map.h) takes it: 0 at the finest.
 void keepSlopes(const gl::Texture& texture, const TextureImage& image) {
   int width = image.width, height = image.height;
-  std::vector<vec3> means = normalsOf(image);
+  std::vector<vec3> means; // of a level
   std::vector<u8vec4> texels = image.texels;
   for (u8vec4& t : texels) t.w = 0;
   for (int level = 0;; ++level) {
     gl::pulse();
     glTextureSubImage2D(texture.name(), level, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     if (width == 1 && height == 1) return;
-    const size_t right = width > 1, down = height > 1 ? size_t(width) : 0, row = size_t(width);
-    const int step = width > 1 ? 2 : 1, rows = height > 1 ? 2 : 1;
+    const size_t right = width > 1, row = size_t(width), down = height > 1 ? row : 0, step = 1 + right;
+    const size_t rows = height > 1 ? 2 * row : row;
     width = std::max(1, width / 2), height = std::max(1, height / 2);
     texels.resize(size_t(width) * size_t(height));
+    if (level == 0) means.resize(texels.size());
     texture.read(std::span(texels), GL_RGBA, GL_UNSIGNED_BYTE, level + 1);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x) {
-        const size_t from = size_t(rows * y) * row + size_t(step * x), to = size_t(y) * size_t(width) + size_t(x);
-        means[to] = 0.25f * (means[from] + means[from + right] + means[from + down] + means[from + down + right]);
+        const size_t from = size_t(y) * rows + size_t(x) * step, to = size_t(y) * size_t(width) + size_t(x);
+        means[to] = level == 0
+                        ? meanOfBlock(image, x, y)
+                        : 0.25f * (means[from] + means[from + right] + means[from + down] + means[from + down + right]);
         texels[to].w = uint8_t(std::lround(255 * std::sqrt(std::max(0.0f, 1 - glm::length(means[to])))));
       }
   }

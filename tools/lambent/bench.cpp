@@ -188,7 +188,9 @@ std::string spreadText(double median, const Value& quartiles) {
 RunPlan benchPlan(const BenchOptions& options, LaunchContext& opened, int frames) {
   RunPlan plan = planOf(opened, options.frames > 0 || opened.shot ? options.frames : frames);
   plan.skip = options.skip;
-  if (plan.frames <= plan.skip) throw InputError("--skip", "leaves no frame of " + std::to_string(plan.frames));
+  if (plan.frames <= plan.skip)
+    throw InputError(options.launch.scene, "of its " + std::to_string(plan.frames) + " frames --skip " +
+                                               std::to_string(plan.skip) + " leaves none (--skip 0)");
   return plan;
 }
 
