@@ -31,8 +31,8 @@ LAMBENT_API lambent_status lambent_world_load(const char* file, const char* scen
 LAMBENT_API void lambent_world_allow_outside(int allow);
 /* Not 0: they may ask for more memory and time than their size explains. For files that you trust. */
 LAMBENT_API void lambent_world_allow_large(int allow);
-/* Not 0: their materials do not hide backs (back_hidden), as glTF has it where they are not double-sided. For who draws
- * them without culling. */
+/* Not 0: their materials do not hide backs (back_hidden), as glTF has it where they are not double-sided. For hosts
+ * that draw them without culling. */
 LAMBENT_API void lambent_world_two_sided(int shown);
 /* What it told stays in its scenes. NULL does nothing. */
 LAMBENT_API void lambent_world_destroy(lambent_world* world);

@@ -65,8 +65,8 @@ float unshadowed(LightRecord light, vec3 position, vec3 normal, out vec3 towards
 }
 
 #if defined(DOUBTS) && defined(SKY)
-/// Whether any direction of this block (of 128) is lit without doubt. Its few directions stand for a sky that comes from everywhere, so their
-/// shadows are blurred; but a place that sees none of it must stay black, however thin the walls.
+/// Whether any direction of this block (of 128) is lit without doubt. Its few directions stand for a sky that comes from
+/// everywhere, so their shadows are blurred; but a place that sees none of it must stay black, however thin the walls.
 bool seesSky(vec3 position, vec3 normal) {
   for (int i = 0; i < lightCount; ++i) {
     vec3 towardsLight;
@@ -152,7 +152,8 @@ void main() {
 #endif
     irradiance += light.intensityLayer.rgb * (weight * seen);
 #ifdef GLOSSY
-    glossy += light.intensityLayer.rgb * (weightOfLobe * seen * glossyReflectance(receiver, towardsLight, wideningOf(light, position)));
+    vec3 lobe = glossyReflectance(receiver, towardsLight, wideningOf(light, position));
+    glossy += light.intensityLayer.rgb * (weightOfLobe * seen * lobe);
 #endif
   }
   outIrradiance = vec4(irradiance, 1.0);

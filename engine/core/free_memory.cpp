@@ -40,7 +40,8 @@ AllocationLimit::AllocationLimit(size_t bytes) {
   const size_t pages = numberIn("/proc/self/statm"); // of addresses, which is what the system counts
   rlimit limit{};
   if (pages == kUnknown || getrlimit(RLIMIT_AS, &limit) != 0) return;
-  const uint64_t most = pages * uint64_t(sysconf(_SC_PAGESIZE)) + bytes, before = limit.rlim_cur;
+  constexpr uint64_t kForOthers = 128 << 20; // of the program's threads, meanwhile
+  const uint64_t most = pages * uint64_t(sysconf(_SC_PAGESIZE)) + bytes + kForOthers, before = limit.rlim_cur;
   if (most >= before) return;
   limit.rlim_cur = most;
   if (setrlimit(RLIMIT_AS, &limit) == 0) before_ = before;

@@ -16,8 +16,8 @@ size_t freeMemory();
 /// memory/); files that the system keeps in memory count as free. The largest number where it has no limit.
 size_t freeOfGroup(const std::filesystem::path& folder);
 
-/// While it lives the process gets no more than so many bytes beside what it has: an allocation beyond throws
-/// std::bad_alloc, in any thread. One lives at a time; who makes another waits.
+/// While it lives the process gets no more than so many bytes, and 128 MiB for what other threads do, beside what it has:
+/// an allocation beyond throws std::bad_alloc, in any thread. One lives at a time; who makes another waits.
 class AllocationLimit {
  public:
   explicit AllocationLimit(size_t bytes);

@@ -322,7 +322,8 @@ void decodePrimitive(Document& doc, tinygltf::Primitive& primitive, const std::s
                         " faces, but its accessors have " + std::to_string(count) + " elements");
   // What the decoder takes for a corner and a vertex, by measurement.
   constexpr size_t kBytesPerCorner = 64, kBytesPerTable = 8;
-  doc.spend(most, kBytesPerCorner + kBytesPerTable * size_t(head.tables), place);
+  const size_t ofCorner = kBytesPerCorner + kBytesPerTable * size_t(head.tables);
+  doc.spend(most, ofCorner, place);
 
   const Spend spend = [&](size_t attributes, size_t bytesOfPoint) {
     doc.budget.decoded += attributes;
@@ -338,12 +339,14 @@ void decodePrimitive(Document& doc, tinygltf::Primitive& primitive, const std::s
     // Symbols of which no value is made: up to 64 for each byte of the stream, before any is looked at.
     constexpr size_t kBytesOfSymbols = 64 * 12;
     std::optional<AllocationLimit> limit;
-    if (bytes.size > doc.budget.left() / kBytesOfSymbols) limit.emplace(doc.budget.left());
+    if (bytes.size > doc.budget.left() / kBytesOfSymbols)
+      limit.emplace(doc.budget.left() + size_t(most) * ofCorner); // charged, not yet taken
     mesh = head.sequential ? decodeMesh<draco::MeshSequentialDecoder>(bytes, spend, defect)
                            : decodeMesh<draco::MeshEdgebreakerDecoder>(bytes, spend, defect);
   } catch (const std::bad_alloc&) {
-    doc.fail(place, "needs more memory than a file of " + std::to_string(doc.budget.read) +
-                        " bytes may ask for (--allow-large lets it)");
+    doc.fail(place, doc.budget.trusted ? std::string("needs more memory than is left")
+                                       : "needs more memory than a file of " + std::to_string(doc.budget.read) +
+                                             " bytes may ask for (--allow-large lets it)");
   }
   if (!defect.empty()) doc.fail(place, "is damaged: " + defect);
   const size_t points = mesh->num_points();

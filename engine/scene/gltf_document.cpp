@@ -336,7 +336,7 @@ Document readDocument(const fs::path& file, FileTrust trust) {
   constexpr size_t kBytesPerMaterial = 2400; // of the parser's and ours
   doc.spend(json.materials, kBytesPerMaterial, std::to_string(json.materials) + " materials");
   constexpr size_t kBytesPerPicture = 420;
-  doc.spend(json.pictures, kBytesPerPicture, std::to_string(json.pictures) + " samplers, textures and images");
+  doc.spend(json.textureParts, kBytesPerPicture, std::to_string(json.textureParts) + " samplers, textures and images");
   Reading reading{&doc.budget, file.parent_path(), trust.outside, false, {}, {}, {}, {}};
   for (const std::string& uri : json.uris)
     if (uri.find('+') != std::string::npos) reading.uris[asInForms(uri)] = pathOfUri(uri);

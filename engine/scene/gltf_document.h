@@ -49,8 +49,8 @@ struct Budget {
   bool showsTooMuch() const { return !trusted && shown > shownLimit(); }
   size_t shownLimit() const { return kShownBase + kShownPerByte * read; }
 
-  /// Attributes that are decoded from Draco, those too that nothing uses: of 18 bytes each may have a table that takes
-  /// 0.4 ms to build.
+  /// Attributes that are decoded from Draco, those too that nothing uses: one of 18 bytes may have a table that
+  /// takes 0.4 ms to build.
   static constexpr size_t kDecodedBase = 25000;
   size_t decoded = 0;
   bool decodesTooMuch() const { return !trusted && decoded > decodedLimit(); }

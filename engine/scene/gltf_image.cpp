@@ -12,7 +12,6 @@
 #include <cstring>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <new>
 #include <string_view>
 
@@ -146,10 +145,15 @@ size_t workingBytes(Bytes bytes) { return isWebp(bytes) ? 4 : !isJpeg(bytes) ? 0
 /// Bytes that the decoder of a WebP without loss, or of its alpha, takes at most for tables of codes: by libwebp 1.2
 /// some 5 KiB for 16 texels, and for 4 bytes of the file, which nothing of the picture's size tells.
 size_t tableBytes(Bytes bytes, const glm::ivec2& size) {
-  constexpr size_t kTable = 5500;
+  constexpr size_t kTable = 5500, kName = 4;
   const std::string_view text(reinterpret_cast<const char*>(bytes.data), isWebp(bytes) ? bytes.size : 0);
-  if (text.find("VP8L") == text.npos && text.find("ALPH") == text.npos) return 0;
-  return kTable * std::min(size_t(size.x) * size_t(size.y) / 16, bytes.size / 4);
+  size_t coded = text.find("VP8L") == text.npos ? 0 : bytes.size; // bytes
+  if (const size_t alpha = text.find("ALPH"); alpha != text.npos && alpha + 2 * kName <= bytes.size) {
+    uint32_t length = 0;
+    std::memcpy(&length, bytes.data + alpha + kName, sizeof length);
+    coded = std::max(coded, std::min(size_t(length), bytes.size));
+  }
+  return kTable * std::min(size_t(size.x) * size_t(size.y) / 16, coded / 4);
 }
 
 /// Why the image cannot be decoded; empty: it may be. `passed` sums over the file's JPEGs the texels that their passes
@@ -235,22 +239,16 @@ void decodeImages(Import& import) {
   std::ranges::partial_sort(working, working.begin() + std::ptrdiff_t(atOnce), std::greater());
   for (size_t i = 0; i < atOnce; ++i) doc.spend(working[i].first, 1, working[i].second);
   std::atomic<size_t> done = 0;
-  std::mutex mutex;
+  constexpr size_t kLarge = 64 << 20;
   std::vector<size_t> alone; // whose tables may be large
+  for (size_t i = 0; i < order.size(); ++i)
+    if (defects[i].empty() && tableBytes(encodedBytes(doc, order[i].first), sizes[i]) > kLarge) alone.push_back(i);
   parallelFor(order.size(), 1, [&](size_t begin, size_t end) {
     import.tell("textures", Import::kMeshes, 1, done++, order.size());
-    for (size_t i = begin; i < end; ++i) {
-      if (!defects[i].empty()) continue;
-      constexpr size_t kLarge = 64 << 20;
-      if (tableBytes(encodedBytes(doc, order[i].first), sizes[i]) > kLarge) {
-        const std::scoped_lock lock(mutex);
-        alone.push_back(i);
-      } else {
+    for (size_t i = begin; i < end; ++i)
+      if (defects[i].empty() && !std::ranges::binary_search(alone, i))
         images[i] = decode(doc, order[i].first, order[i].second, sizes[i], defects[i]);
-      }
-    }
   });
-  std::ranges::sort(alone);
   for (const size_t i : alone) {
     constexpr size_t kPerTexel = 2 * sizeof(u8vec4) + 4; // charged, not yet taken
     const AllocationLimit limit(doc.budget.left() + kPerTexel * size_t(sizes[i].x) * size_t(sizes[i].y));

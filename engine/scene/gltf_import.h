@@ -24,7 +24,7 @@ struct Import {
   std::map<uint32_t, HighestJoint> highestJoints;  // by slot of SceneAssets::meshes
   std::map<int, uint32_t> materials;               // -1: the default one
   std::map<std::pair<int, bool>, uint32_t> images; // by (image, whether its colours are sRGB)
-  std::map<std::pair<int, std::string>, int> pictures; // first image of a buffer view or file: each is decoded once
+  std::map<std::pair<int, std::string>, int> firstOfSource; // image of a buffer view or file: each is decoded once
   std::vector<Entity> entities;                    // by node; invalid where the scene does not reach it
   LoadStep step;                                   // empty: nobody listens
 

@@ -98,7 +98,7 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   const tinygltf::Image& image = doc.model.images[size_t(source)];
   const bool shared = image.bufferView >= 0 || !image.uri.empty();
   const int first =
-      shared ? import.pictures.emplace(std::pair(image.bufferView, image.uri), source).first->second : source;
+      shared ? import.firstOfSource.emplace(std::pair(image.bufferView, image.uri), source).first->second : source;
   ref.image = import.images.emplace(std::pair(first, srgb), uint32_t(import.images.size())).first->second;
   if (texture.sampler >= 0) {
     const tinygltf::Sampler& sampler = doc.model.samplers[size_t(texture.sampler)];

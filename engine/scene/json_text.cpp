@@ -53,7 +53,7 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
     } else if (c == '[' || c == '{') {
       if (c == '{' && open.size() == 2 && outermost == "materials") ++out.materials;
       if (c == '{' && open.size() == 2 && (outermost == "samplers" || outermost == "textures" || outermost == "images"))
-        ++out.pictures;
+        ++out.textureParts;
       if (open.size() >= kMaxNesting)
         throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxNesting) + " levels deep");
       open.emplace_back();

@@ -12,7 +12,7 @@ namespace lambent {
 struct JsonText {
   std::vector<std::string> uris; // values of keys "uri" that are not data themselves
   size_t materials = 0;          // objects in the list of that name of the outermost object
-  size_t pictures = 0;           // the same of samplers, textures and images
+  size_t textureParts = 0;       // the same of samplers, textures and images
 };
 /// Checks the text. Throws InputError. Whether it is JSON at all is left to the parser.
 JsonText checkJson(const std::filesystem::path& file, std::string_view text);

@@ -294,7 +294,7 @@ RayWork workOf(const Scene& scene, const CameraView& camera, bool surfaces) {
       if (ray.full || (fromCamera ? step == 2 : step > 0 || !ends(ray))) walks[ray.walk].add(ray);
       if (ray.looks && !ray.full) {
         Ray passes;
-        passes.origin = ray.origin, passes.passed = ray.passed;
+        passes.origin = ray.origin, passes.boxes = ray.passed;
         walks[kThroughBacks].add(passes);
       }
       if (!ends(ray)) continue;
@@ -319,7 +319,7 @@ void refuseSlowRays(const Scene& scene, const RayWork& work) {
   std::ostringstream text;
   text << "every ray looks at " << std::lround(work.sum()) << " triangles in the mean";
   if (work.cutOut >= 1)
-    text << ", " << std::lround(work.cutOut) << " that are cut out, blended or hidden backs counted 7 times";
+    text << ", " << std::lround(work.cutOut) << " that are cut out or blended counted 7 times";
   text << " (most from " << at.x << ", " << at.y << ", " << at.z
        << "): pictures would take very long; thin them out, or --allow-large";
   throw InputError(scene.file.string(), text.str());

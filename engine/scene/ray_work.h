@@ -10,8 +10,9 @@ namespace lambent {
 /// that leave what a picture by the file's first camera (or the default view) shows, and of what that camera's own
 /// pass.
 struct RayWork {
-  float boxes = 0;  // of triangles, which it enters: no tree of boxes can do without a look at what is in them
-  float cutOut = 0; // triangles that it passes, cut out there or with hidden backs
+  float boxes = 0;  // of triangles, which it enters: no tree of boxes can do without a look at what is in them; of the
+                    // camera's own rays the hidden backs that they pass
+  float cutOut = 0; // triangles that it passes where they are cut out
   vec3 place{0};    // world space; where the ray begins that has most to look at
 
   /// In boxes: to ask a texture whether a triangle is cut out takes as long as these many.

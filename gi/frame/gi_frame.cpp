@@ -164,18 +164,19 @@ LightProvider& GiFrame::Kept::technique() {
   return *indirect;
 }
 
-/// Before more lights are asked for than memory holds.
+/// Before more lights, or maps of them, are asked for than memory holds.
 void GiFrame::Kept::refuseBeyondMemory(const Settings& asked) {
+  constexpr double kTexel = 2; // bytes
   const Needs needs = needsOf(asked);
-  const double lights = needs.sampled() ? bytesOfVpls(asked.smc, asked.vpl) : 0, texel = 2;
-  const double maps = needs.sampled() && needs.maps && context.drawnByCpu
-                          ? texel * asked.smc.vpls * asked.shadow.resolution * asked.shadow.resolution
-                          : 0;
+  const double side = asked.shadow.resolution;
+  const double lights = needs.sampled() ? bytesOfVpls(asked.smc, asked.vpl) : 0;
+  const double maps = needs.sampled() && needs.maps && context.drawnByCpu ? kTexel * asked.smc.vpls * side * side : 0;
   if (lights + maps > bytesOfLights) {
-    lambent::refuseBeyondMemory(asked.smc, asked.vpl, freeMemory());
-    if (maps > double(freeMemory()))
+    const size_t free = freeMemory();
+    lambent::refuseBeyondMemory(asked.smc, asked.vpl, free);
+    if (const double more = lights + maps - bytesOfLights; more > double(free)) // what is held makes room
       throw InputError("settings",
-                       "smc.vpls and shadow.resolution ask for " + moreThanIsLeft(maps, "lower one of them"));
+                       "smc.vpls and shadow.resolution ask for " + moreThanIsLeft(more, "lower one of them"));
   }
   bytesOfLights = lights + maps;
 }

@@ -53,6 +53,7 @@ void ExposureMeter::measure(const gl::Texture& radiance) {
     sums_ = gl::Texture("exposure", {.format = GL_RGBA32F, .width = kAcross, .height = kDown});
     framebuffer_ = gl::Framebuffer("exposure", {&sums_});
   }
+  now_ = dark_ > 0 ? 0 : measureNow(radiance);
   const gl::PassScope scope = context_.scope(StageId::Display);
   const gl::Program& program = context_.programs.get({.fragment = "exposure.frag"});
   program.use();
@@ -75,7 +76,7 @@ float ExposureMeter::read() {
     sums.roots += double(cell.z), sums.count += double(cell.w);
   }
   dark_ = float(sums.dark());
-  return sums.exposure();
+  return now_ > 0 ? now_ : sums.exposure();
 }
 
 } // namespace lambent

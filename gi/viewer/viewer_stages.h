@@ -51,7 +51,7 @@ class ExposureMeter {
   explicit ExposureMeter(PassContext context) : context_(context) {}
   /// Returns it; 0 when there is no light. Reads the image back.
   float measureNow(const gl::Texture& radiance);
-  /// Measures it for the next read, with the weights that the measurement before found.
+  /// Measures it for the next read, with the weights that the measurement before found; at once after a black image.
   void measure(const gl::Texture& radiance);
   /// What the image measured last asks for, once; 0 where there is no light in it, or nothing new. Called before a
   /// frame is drawn it waits for the one before alone.
@@ -61,7 +61,8 @@ class ExposureMeter {
   PassContext context_;
   gl::Texture sums_;
   gl::Framebuffer framebuffer_;
-  float dark_ = 0; // ExposureSums::dark
+  float dark_ = 0; // ExposureSums::dark; 0: not known, of a black image
+  float now_ = 0;  // measured at once where it was not known; else 0
   bool unread_ = false;
 };
 

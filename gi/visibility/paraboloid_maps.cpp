@@ -149,7 +149,7 @@ void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
   // Each array alone may fit: together they are filled frame by frame, when it is too late to refuse.
   const double bytes = 2.0 * double(in.poses.size()) * in.resolution * in.resolution;
   const std::string asked = stage_ == StageId::EmitterMaps ? "shadow.emitterSamples, shadow.emitterResolution"
-                                                           : "smc.vpls, shadow.resolution";
+                                                           : "fewer lights, shadow.resolution";
   if (context_.drawnByCpu && bytes > double(freeMemory()))
     throw RunError("graphics memory: shadow maps of " + std::to_string(in.poses.size()) + " lights need " +
                    moreThanIsLeft(bytes, "lower " + asked));

@@ -16,20 +16,22 @@ SHARED_INLINE vec3 mappedNormal(vec3 normal, vec3 tangent, float side, vec3 texe
 }
 
 /// Length of the mean of a pixel's unit normals, as the coarser levels of a normal map hold it: root of 1 less it, so
-/// that small slopes keep their digits. `scale` is the material's, and that of slopes; theirs is the variance 1/length − 1
+/// that small slopes keep their digits. `scale` is the material's, and that of slopes; their variance is 1/length − 1
 /// (Toksvig 2005, "Mipmapping normal maps").
 SHARED_INLINE float meanNormalLength(float stored, float scale) {
   float variance = scale * scale * (1.0f / max(1.0f - stored * stored, 1e-2f) - 1.0f);
   return 1.0f / (1.0f + variance);
 }
 
-/// Mean over a pixel's normals of their cosine to a light, 0 where they face away from it. `cosine` is that of their mean
-/// direction. For a normally distributed cosine, within 4 % of its standard deviation; exact for a length of 1.
+/// Mean over a pixel's normals of their cosine to a light, 0 where they face away from it. `cosine` is that of their
+/// mean direction. Exact for a length of 1; a fit to normal distributions, within 4 % of them up to 85° and within 5 %
+/// of bumps of a sine up to 75° (6 to 10 % too dark at 80 to 85°).
 SHARED_INLINE float meanCosine(float cosine, float length) {
   float mean = length * cosine;
   // Narrow slopes spread it by the light's sine alone; normals all around, as far as 1/3.
   float variance = (1.0f - length * length) * mix(1.0f / 3.0f, 0.5f - 0.5f * cosine * cosine, length);
-  return 0.5f * (mean + sqrt(mean * mean + 0.6366f * max(variance, 0.0f)));
+  float spread = variance > 0.0f ? 0.6366f * variance * exp(-0.3f * mean * mean / variance) : 0.0f;
+  return 0.5f * (mean + sqrt(mean * mean + spread));
 }
 
 /// A normal that faces away from the viewer is of a slope that hides itself: bent to where it is seen edge on.

@@ -1,6 +1,7 @@
 // Settings as typed rows, presets, and what goes together on the four axes.
 #include "gi/plan/settings.h"
 
+#include "gi/plan/asked_work.h"
 #include "gi/plan/presets.h"
 
 #include "tests/support/files.h"
@@ -146,6 +147,30 @@ TEST(Settings, AFirstFrameDoesLessWhereRaysAreSlow) {
     EXPECT_EQ(warmupOf({.warmup = asked}, rayWork), iterations) << asked << " at " << rayWork;
     EXPECT_EQ(warmupOf({.warmup = asked, .shortWarmup = false}, rayWork), asked);
   }
+}
+
+/// What is asked for beside the defaults, by stage: what presets and a large picture take is not much, and two stages
+/// do not multiply each other.
+TEST(AskedWork, IsThatOfTheStageThatAsksForMost) {
+  const auto of = [](std::initializer_list<std::pair<const char*, const char*>> set) {
+    Settings settings;
+    for (const auto& [name, value] : set) applySetting(settings, name, value);
+    return workOf(settings);
+  };
+  EXPECT_EQ(of({}).times, 1);
+  EXPECT_EQ(of({{"smc.vpls", "256"}, {"smc.paths", "1"}}).times, 1) << "less";
+  for (const std::string& preset : presetNames()) {
+    Settings settings;
+    applyPreset(settings, preset);
+    EXPECT_LE(workOf(settings).times, 16) << preset;
+  }
+  EXPECT_EQ(of({{"shadow.sunResolution", "8192"}, {"shadow.spotResolution", "4096"}}).times, 1);
+  EXPECT_LE(of({{"direct.frames", "512"}, {"history.frames", "256"}, {"gather.tile", "64"}}).times, 1);
+  const AskedWork maps = of({{"smc.vpls", "8192"}, {"shadow.resolution", "512"}, {"gather.lights", "96"}});
+  EXPECT_DOUBLE_EQ(maps.times, 64);
+  EXPECT_EQ(maps.names, "smc.vpls, shadow.resolution");
+  EXPECT_DOUBLE_EQ(of({{"vpl.source", "mir"}, {"vpl.mirCandidates", "1024"}, {"smc.vpls", "8192"}}).times, 32);
+  EXPECT_DOUBLE_EQ(of({{"lpv.cells", "64"}}).times, 64);
 }
 
 } // namespace lambent::test::settings_test

@@ -122,7 +122,10 @@ TEST_F(DisplayTest, ExposureIsThatOfWhatThereIsToSee) {
     for (int x = 0; x < brightColumns; ++x)
       for (int y = 0; y < 40; ++y) image.at(x, y) = vec3(bright);
     const FrameResults frame = frameWith(image);
+    ExposureMeter fresh(passes); // knows of no image, as after a black one
+    fresh.measure(*frame.radiance);
     const float now = meter.measureNow(*frame.radiance);
+    EXPECT_NEAR(fresh.read(), now, 1e-3f * now);
     for (int frames = 0; frames < 3; ++frames) {
       meter.measure(*frame.radiance);
       EXPECT_NEAR(meter.read(), now, 1e-3f * now) << "from the grid";

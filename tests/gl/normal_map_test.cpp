@@ -141,6 +141,17 @@ TEST_F(NormalMapTest, SlopesFinerThanAPixelGetTheirMeanLight) {
   const double sunny = -2 * glm::dot(mean, dvec3(sun)), lit = mean.y;
   EXPECT_NEAR(meanOfImage(direct), sunny, 0.01 * sunny);
   EXPECT_NEAR(meanOfImage(indirect), lit, 0.01 * lit);
+  // Where some face away from the sun, more than the length of their mean counts: a fit.
+  for (const float angle : {60.0f, 75.0f}) {
+    const vec3 towards(std::sin(glm::radians(angle)), std::cos(glm::radians(angle)), 0);
+    scene.lights[0].direction = -towards;
+    double wanted = 0;
+    for (const u8vec4& t : map.texels) {
+      const vec3 local = glm::normalize(vec3(t) * (2 / 255.0f) - 1.0f);
+      wanted += 2 * std::max(0.0, double(glm::dot(towards, vec3(local.x, local.z, local.y)))) / (64.0 * 64.0);
+    }
+    EXPECT_NEAR(meanOfImage(directOf(passes, scene, {}, settings, of)), wanted, 0.05 * wanted) << angle;
+  }
 }
 
 /// A sky of 1 brings π·(1 + n·up)/2 to a slope of an open floor: the rest of what it sees is the floor, which is

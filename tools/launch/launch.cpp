@@ -12,13 +12,16 @@
 #include "engine/scene/ray_work.h"
 #include "engine/trace/open_sky.h"
 #include "game/rules/props.h"
+#include "gi/plan/asked_work.h"
 #include "gi/plan/presets.h"
 #include "tools/launch/launch_light.h"
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <sstream>
 #include <tuple>
 
 namespace lambent {
@@ -147,27 +150,16 @@ std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std:
   return notes;
 }
 
-/// A shot is a file of somebody's too: what its settings ask for beside the defaults is bounded. Numbers of paths, rays
-/// and frames count times each other; those of lights and texels squared.
+/// A shot is a file of somebody's too: what its settings ask for beside the defaults is bounded.
 void refuseHeavyShot(const Shot& shot, const std::string& file) {
-  constexpr double kMost = 16;     // of what a default frame takes
-  constexpr double kOfNone = 1024; // what stands for a default of 0: no limit, or by the view
+  constexpr double kMost = 16; // of what a default frame takes
   Settings settings;
   for (const auto& [name, value] : shot.set) applySetting(settings, name, value);
-  double work = 1;
-  std::string names;
-  for (const SettingRow& row : settingRows(settings)) {
-    if (row.kind != SettingKind::Whole) continue;
-    const double more = row.get(settings) / (row.standard > 0 ? row.standard : kOfNone);
-    if (!(more > 1)) continue;
-    const std::string_view unit = row.unit;
-    work *= unit == "texels" || unit == "lights" ? more * more : more;
-    names += (names.empty() ? "" : ", ") + row.name;
-  }
-  if (work <= kMost) return;
+  const AskedWork asked = workOf(settings);
+  if (asked.times <= kMost) return;
   std::ostringstream text;
-  text << "its settings ask for " << work << " times the work of the defaults (" << names << "; " << kMost
-       << " at most): a first picture would take very long; lower them, or --allow-large";
+  text << "its settings ask for " << std::lround(asked.times) << " times the work of the defaults (" << asked.names
+       << "; " << kMost << " at most): a first picture would take very long; lower them, or --allow-large";
   throw InputError(file, text.str());
 }
 

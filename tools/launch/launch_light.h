@@ -4,9 +4,11 @@
 #include "engine/trace/embree_query.h"
 #include "tools/launch/launch.h"
 
+#include <optional>
+
 namespace lambent {
 
-/// The rays of a view, for who asks first to have made.
+/// Rays of a view, made when first asked for. The view must outlive it.
 class RaysOnce {
  public:
   explicit RaysOnce(const SceneView& view) : view_(view) {}
