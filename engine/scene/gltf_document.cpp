@@ -3,6 +3,7 @@
 #include "engine/scene/gltf_document.h"
 
 #include "engine/core/free_memory.h"
+#include "engine/core/open_watch.h"
 #include "engine/scene/gltf_compression.h"
 #include "engine/scene/json_text.h"
 
@@ -143,6 +144,7 @@ bool readWholeFile(std::vector<unsigned char>* out, std::string* error, const st
     if (added) real->second = fs::weakly_canonical(held.opened(), none).string();
     if (reading.files.insert(real->second).second) {
       reading.budget->read += size;
+      OpenWatch::read(size);
     } else if (!reading.budget->take(size + kOfItself, 1)) {
       throw InputError(file,
                        "is read so often that it needs more memory than the scene may ask for (--allow-large lets it)");
@@ -330,6 +332,7 @@ Document readDocument(const fs::path& file, FileTrust trust) {
   std::vector<uint8_t> bytes = readFileBytes(file);
   const auto [binary, json] = checkContainer(file, bytes);
   doc.budget.read = bytes.size();
+  OpenWatch::read(bytes.size());
   if (std::vector<uint8_t> readable = asParsed(file, bytes); !readable.empty()) bytes = std::move(readable);
   doc.budget.free = size_t(kShareCounted * double(freeMemory()));
   doc.budget.trusted = trust.large;

@@ -1,6 +1,7 @@
 #include "engine/scene/sky_file.h"
 
 #include "engine/core/error.h"
+#include "engine/core/open_watch.h"
 #include "engine/image/image.h"
 
 #include <algorithm>
@@ -44,6 +45,9 @@ std::shared_ptr<const SkyImage> readSky(const std::filesystem::path& file, std::
   const std::filesystem::path& source = opened.empty() ? file : opened;
   if (std::filesystem::is_directory(source))
     throw InputError(file.string(), "is a folder (a picture of the sky expected)");
+  std::error_code unknown;
+  const uintmax_t size = std::filesystem::file_size(source, unknown);
+  if (!unknown) OpenWatch::read(size);
   Image image;
   try {
     image = extensionOf(file) == ".hdr" ? readHdr(source, mostTexels) : readExr(source, {}, mostTexels);

@@ -5,6 +5,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/free_memory.h"
+#include "engine/core/open_watch.h"
 #include "engine/core/parallel.h"
 #include "engine/core/resources.h"
 #include "engine/core/text.h"
@@ -281,7 +282,7 @@ SceneView LaunchContext::at(double t) {
 void useThreads(int threads) {
   setThreadCount(threads);
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
-  requireResources(threadCount() + 1); // of loops, and one that traces beside frames
+  requireResources(threadCount() + 1); // of loops, and one that traces beside frames or watches what is opened
 }
 
 /// A file in other units than glTF's metres: what the shot or the person says, or centimetres where rooms are too high
@@ -308,6 +309,8 @@ void chooseUnit(LaunchContext& stage, const LaunchOptions& options) {
 
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {
   useThreads(options.threads);
+  std::optional<OpenWatch> watch;
+  if (!options.trust.large) watch.emplace(options.scene);
   return loadLaunch(options, {});
 }
 
