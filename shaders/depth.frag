@@ -8,6 +8,6 @@ layout(location = 3) in vec4 color;
 
 void main() {
 #ifdef ALPHA_MASK
-  if (baseColorAt(uv, color).a < material.emission.a) discard;
+  if (isCutOut(baseColorAt(uv, color).a)) discard;
 #endif
 }

@@ -15,7 +15,7 @@ void main() {
   vec3 normal = cross(dFdx(positionEye), dFdy(positionEye));
   float size = length(normal);
 #ifdef ALPHA_MASK
-  if (baseColorAt(uv, color).a < material.emission.a) discard;
+  if (isCutOut(baseColorAt(uv, color).a)) discard;
 #endif
   float distance = length(positionEye);
   normal = size > 0.0 ? normal / size : -positionEye / distance;

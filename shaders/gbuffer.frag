@@ -39,7 +39,7 @@ void main() {
   if (camera.size.x < 0.0) discard; // never, which the compiler cannot know
 #endif
 #ifdef ALPHA_MASK
-  if (base.a < material.emission.a) discard;
+  if (isCutOut(base.a)) discard;
 #endif
   vec3 towardsViewer = camera.lens.w > 0.0 ? camera.worldFromView[2].xyz : -normalize(positionEye);
   vec3 geometric = cross(across, up);

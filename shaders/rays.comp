@@ -8,7 +8,7 @@ struct ListedRay {
   vec3 origin;
   float tMax;
   vec3 direction;
-  float pad;
+  uint key;
 };
 struct ListedHit {
   float t;
@@ -30,9 +30,9 @@ void main() {
   if (i >= uint(count)) return;
   ListedRay ray = rays[i];
 #ifdef ANY
-  blocked[i] = rayBlocked(ray.origin, ray.direction, ray.tMax) ? 1u : 0u;
+  blocked[i] = rayBlocked(ray.origin, ray.direction, ray.tMax, ray.key) ? 1u : 0u;
 #else
-  RayHit hit = rayHit(ray.origin, ray.direction, ray.tMax, false);
+  RayHit hit = rayHit(ray.origin, ray.direction, ray.tMax, false, ray.key);
   hits[i] = ListedHit(hit.t, hit.instance, hit.triangle, hit.barycentric.x, hit.barycentric.y);
 #endif
 }

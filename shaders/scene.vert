@@ -1,10 +1,16 @@
 #version 450
 // Triangles of an instance, for every pass that draws the scene. DEPTH_ONLY leaves out what depth does not need;
-// POSITION puts back where it is.
+// POSITION puts back where it is, ALPHA_BLEND tells
+// whose triangles they are.
 layout(location = 0) in vec3 positionObject;
 layout(location = 4) in vec4 worldRow0; // rows of worldFromObject, one per instance
 layout(location = 5) in vec4 worldRow1;
 layout(location = 6) in vec4 worldRow2;
+#ifdef ALPHA_BLEND
+layout(location = 8) in uint instanceIndex;
+layout(location = 6) flat out uint instance;
+invariant gl_Position; // what is drawn twice lies at the same depth
+#endif
 #if !defined(DEPTH_ONLY)
 layout(location = 1) in vec3 normalObject;
 layout(location = 0) out vec3 normalWorld;
@@ -27,6 +33,9 @@ layout(location = 3) out vec4 color;
 uniform mat4 clipFromWorld;
 
 void main() {
+#ifdef ALPHA_BLEND
+  instance = instanceIndex;
+#endif
   vec4 p = vec4(positionObject, 1.0);
   vec3 positionWorld = vec3(dot(worldRow0, p), dot(worldRow1, p), dot(worldRow2, p));
   gl_Position = clipFromWorld * vec4(positionWorld, 1.0);

@@ -10,6 +10,7 @@
 #include <ctime>
 #include <fstream>
 #include <mutex>
+#include <utility>
 
 #include <unistd.h>
 
@@ -23,7 +24,8 @@ constexpr int kSlower = 10;
 constexpr int kSlower = 1;
 #endif
 
-std::atomic<OpenWatch*> living{nullptr};
+std::mutex mutex; // of the pointer
+OpenWatch* living = nullptr;
 
 /// Of all threads of this process.
 double processorSeconds() {
@@ -41,39 +43,58 @@ size_t heldBytes() {
 
 } // namespace
 
-OpenWatch::Budget OpenWatch::of(size_t bytesRead) {
+OpenWatch::Budget OpenWatch::of(size_t bytesRead, bool open) {
   constexpr size_t kSmall = size_t(3) << 20;
   const size_t beyond = bytesRead - std::min(bytesRead, kSmall);
-  return {kSlower * (14 + 4e-6 * double(beyond)), kSlower * (size_t(900'000'000) + 256 * beyond)};
+  return {kSlower * ((open ? 18 : 14) + 4e-6 * double(beyond)), kSlower * (size_t(900'000'000) + 256 * beyond)};
 }
 
 OpenWatch::OpenWatch(std::string file, double share)
     : file_(std::move(file)), share_(share), secondsBefore_(processorSeconds()), bytesBefore_(heldBytes()) {
+  end();
+  const std::lock_guard lock(mutex);
   living = this;
-  thread_ = std::jthread([this](const std::stop_token& end) { watch(end); });
+  thread_ = std::jthread([this](const std::stop_token& ended) { watch(ended); });
 }
 
-OpenWatch::~OpenWatch() { living = nullptr; }
+OpenWatch::~OpenWatch() {
+  const std::lock_guard lock(mutex);
+  if (living == this) living = nullptr;
+}
 
 void OpenWatch::read(size_t bytes) {
-  if (OpenWatch* one = living) one->read_ += bytes;
+  const std::lock_guard lock(mutex);
+  if (living) living->read_ += bytes;
 }
 
-void OpenWatch::watch(const std::stop_token& end) const {
-  std::mutex mutex;
-  std::condition_variable_any ended;
-  for (std::unique_lock lock(mutex); !end.stop_requested();) {
-    ended.wait_for(lock, end, std::chrono::milliseconds(20), [] { return false; });
-    Budget budget = of(read_);
-    budget = {share_ * budget.seconds, size_t(share_ * double(budget.bytes))};
+void OpenWatch::opened(double times) { times_ = times; }
+
+bool OpenWatch::any() {
+  const std::lock_guard lock(mutex);
+  return living;
+}
+
+void OpenWatch::end() {
+  const std::lock_guard lock(mutex);
+  if (OpenWatch* one = std::exchange(living, nullptr)) one->thread_.request_stop();
+}
+
+void OpenWatch::watch(const std::stop_token& ended) const {
+  std::mutex own;
+  std::condition_variable_any wake;
+  for (std::unique_lock lock(own); !ended.stop_requested();) {
+    wake.wait_for(lock, ended, std::chrono::milliseconds(20), [] { return false; });
+    const double times = times_, factor = share_ * std::max(1.0, times);
+    const Budget budget = of(read_, times > 0);
+    const double most = factor * budget.seconds, mostBytes = factor * double(budget.bytes);
     const double seconds = processorSeconds() - secondsBefore_;
-    const size_t held = heldBytes(), bytes = held - std::min(held, bytesBefore_);
-    if (end.stop_requested() || (seconds <= budget.seconds && bytes <= budget.bytes)) continue;
-    const std::string most = seconds > budget.seconds
-                                 ? std::to_string(std::lround(budget.seconds)) + " s of processor time"
-                                 : std::to_string(budget.bytes / 1'000'000) + " MB of memory";
+    const double bytes = double(heldBytes()) - double(bytesBefore_);
+    if (ended.stop_requested() || (seconds <= most && bytes <= mostBytes)) continue;
+    const std::string what = seconds > most ? std::to_string(std::lround(most)) + " s of processor time"
+                                            : std::to_string(std::lround(mostBytes * 1e-6)) + " MB of memory";
     const std::string line =
-        printable(file_ + ": takes more to open than a file of its size may: " + most + " (--allow-large lets it)");
+        printable(file_ + ": takes more until its first picture than a file of its size may: " + what +
+                  " (--allow-large lets it)");
     std::fprintf(stderr, "error: %s\n", line.c_str());
     _exit(2);
   }

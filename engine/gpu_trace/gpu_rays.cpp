@@ -15,7 +15,7 @@ struct ListedRay {
   vec3 origin;
   float tMax;
   vec3 direction;
-  float pad = 0;
+  uint32_t key = 0;
 };
 
 constexpr size_t kMostAtOnce = 1 << 20; // rays of one dispatch: 32 MiB
@@ -90,7 +90,8 @@ template <class T> std::vector<T> GpuRays::trace(std::span<const Ray> rays, bool
     const size_t count = std::min(kMostAtOnce, rays.size() - first);
     std::vector<ListedRay> listed;
     for (const Ray& r : rays.subspan(first, count))
-      listed.push_back(traceable(r) ? ListedRay{r.origin, r.tMax, r.direction} : ListedRay{vec3(0), -1, vec3(0, 0, 1)});
+      listed.push_back(traceable(r) ? ListedRay{r.origin, r.tMax, r.direction, r.key}
+                                    : ListedRay{vec3(0), -1, vec3(0, 0, 1)});
     const gl::Buffer in = gl::Buffer::of<ListedRay>("rays/list", listed);
     const gl::Buffer answers("rays/answers", count * sizeof(T), nullptr);
     program.use();

@@ -27,9 +27,12 @@ Imf::Slice slice(const vec3* origin, int component, int width) {
 }
 
 std::string channelNames(const Imf::ChannelList& channels) {
+  constexpr int kMostNamed = 16;
   std::string names;
+  int count = 0;
   for (auto c = channels.begin(); c != channels.end(); ++c)
-    names += (names.empty() ? "" : ", ") + std::string(c.name());
+    if (count++ < kMostNamed) names += (names.empty() ? "" : ", ") + std::string(c.name());
+  if (count > kMostNamed) names += " and " + std::to_string(count - kMostNamed) + " more";
   return names.empty() ? "none" : names;
 }
 
@@ -70,11 +73,6 @@ Image readExr(const std::filesystem::path& file, const std::string& layer, uint6
     const auto window = in.header().dataWindow();
     const int64_t width = int64_t(window.max.x) - window.min.x + 1, height = int64_t(window.max.y) - window.min.y + 1;
     checkImageSize(file, width, height, mostTexels);
-    // More than the file can hold, compressed as far as DEFLATE goes, is not there; of that there is no need to ask for
-    // memory.
-    constexpr uint64_t kAlways = 64 << 20, kDeflate = 1032;
-    if (uint64_t(width) * uint64_t(height) * sizeof(vec3) > kAlways + kDeflate * std::filesystem::file_size(file))
-      throw InputError(file.string(), "ends before the last of its " + std::to_string(height) + " rows");
     // The library unpacks all channels, also those that nobody asks for.
     constexpr uint64_t kMostValues = uint64_t(4) * 8192 * 4096; // 0.5 GB, 3 s
     uint64_t count = 0;
@@ -82,6 +80,13 @@ Image readExr(const std::filesystem::path& file, const std::string& layer, uint6
     if (count > 4 && count > kMostValues / (uint64_t(width) * uint64_t(height)))
       throw InputError(file.string(), "has " + std::to_string(count) + " channels of " + std::to_string(width) + "x" +
                                           std::to_string(height) + " values, which are too many to unpack");
+    // More than the file can hold, compressed as far as DEFLATE goes, is not there; of that there is no need to ask for
+    // memory.
+    constexpr uint64_t kAlways = 64 << 20, kDeflate = 1032;
+    uint64_t ofTexel = 0; // bytes
+    for (auto c = channels.begin(); c != channels.end(); ++c) ofTexel += c.channel().type == Imf::HALF ? 2 : 4;
+    if (uint64_t(width) * uint64_t(height) * ofTexel > kAlways + kDeflate * std::filesystem::file_size(file))
+      throw InputError(file.string(), "ends before the last of its " + std::to_string(height) + " rows");
     Image image{int(width), int(height)};
     // Arithmetic on addresses as integers: the origin of a shifted data window is not inside the array.
     const auto origin =

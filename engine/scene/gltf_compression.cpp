@@ -295,7 +295,8 @@ void decodeViews(Document& doc) {
       doc.model.buffers.emplace_back().data = std::move(data);
     } catch (const InputError& e) {
       if (doc.budget.overdrawn()) throw;
-      doc.viewDefects[int(i)] = e.what();
+      const std::string said = e.what(), own = doc.file.string() + ": "; // it is named again where it is used
+      doc.viewDefects[int(i)] = said.starts_with(own) ? said.substr(own.size()) : said;
     }
   }
 }

@@ -3,6 +3,7 @@
 #include "engine/core/free_memory.h"
 #include "engine/core/parallel.h"
 #include "engine/scene/gltf_import.h"
+#include "engine/scene/jpeg.h"
 
 #include <algorithm>
 #include <atomic>
@@ -16,7 +17,6 @@
 #include <string_view>
 
 #include <png.h>
-#include <stb/stb_image.h>
 #include <webp/decode.h>
 
 namespace lambent::gltf {
@@ -41,6 +41,19 @@ bool isWebp(Bytes bytes) {
 
 bool isPng(Bytes bytes) { return bytes.size >= 4 && std::memcmp(bytes.data, "\x89PNG", 4) == 0; }
 bool isJpeg(Bytes bytes) { return bytes.size >= 3 && std::memcmp(bytes.data, "\xff\xd8\xff", 3) == 0; }
+
+/// By its first chunk, which is the header.
+bool sizeOfPng(Bytes bytes, int& width, int& height) {
+  constexpr size_t kHeader = 12, kSizes = 16, kEnd = 24; // bytes
+  if (bytes.size < kEnd || std::memcmp(bytes.data + kHeader, "IHDR", 4) != 0) return false;
+  const auto number = [&](size_t at) {
+    uint32_t n = 0;
+    for (size_t i = at; i < at + 4; ++i) n = n << 8 | bytes.data[i];
+    return int(std::min<uint32_t>(n, 1u << 30));
+  };
+  width = number(kSizes), height = number(kSizes + 4);
+  return true;
+}
 
 /// A PNG on its way into rows of four bytes for each texel.
 struct PngReading {
@@ -123,10 +136,11 @@ Texels decodeTexels(Bytes bytes, int& width, int& height, std::string& defect) {
     if (!texels) defect = "cannot be decoded: damaged WebP, or one that needs more memory than the file may ask for";
     return texels;
   }
-  int channels = 0;
-  Texels texels{stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), {stbi_image_free}};
-  if (!texels) defect = std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG, JPEG or WebP expected)";
-  return texels;
+  Texels texels{static_cast<uint8_t*>(std::malloc(4 * size_t(width) * size_t(height))), {std::free}};
+  if (!texels) throw std::bad_alloc();
+  if (readJpeg(bytes.data, bytes.size, width, height, texels.get(), defect)) return texels;
+  defect = "cannot be decoded: damaged JPEG, " + defect;
+  return {nullptr, {std::free}};
 }
 
 /// Passes over the picture that a JPEG makes, each as long as the picture is large; 0 of other formats. A marker is no
@@ -159,18 +173,18 @@ size_t tableBytes(Bytes bytes, const glm::ivec2& size) {
 /// Why the image cannot be decoded; empty: it may be. `passed` sums over the file's JPEGs the texels that their passes
 /// beyond the usual ones go over.
 std::string defectOf(Bytes bytes, int& width, int& height, uint64_t& passed) {
-  int channels = 0;
+  std::string why;
   if (bytes.size == 0) return "cannot be read (no such file, or it is empty)";
   if (bytes.size > size_t(std::numeric_limits<int>::max())) return "is larger than 2 GiB";
   constexpr uint8_t kKtx2[] = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb};
   if (bytes.size >= sizeof kKtx2 && std::memcmp(bytes.data, kKtx2, sizeof kKtx2) == 0)
     return "is KTX2, which is not decoded here (gltf-transform ktxdecompress IN OUT converts it)";
   if (isWebp(bytes) && !WebPGetInfo(bytes.data, bytes.size, &width, &height)) return "cannot be decoded: damaged WebP";
-  // The library knows more kinds than glTF, and its reader of .hdr never ends where a run is cut off.
   if (!isWebp(bytes) && !isPng(bytes) && !isJpeg(bytes))
     return "cannot be decoded: unknown image type (PNG, JPEG or WebP expected)";
-  if (!isWebp(bytes) && !stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels))
-    return std::string("cannot be decoded: ") + stbi_failure_reason() + " (PNG, JPEG or WebP expected)";
+  if (isJpeg(bytes) && !sizeOfJpeg(bytes.data, bytes.size, width, height, why))
+    return "cannot be decoded: damaged JPEG, " + why;
+  if (isPng(bytes) && !sizeOfPng(bytes, width, height)) return "cannot be decoded: damaged PNG";
   if (width < 1 || height < 1 || width > kMostTexels || height > kMostTexels)
     return "is " + std::to_string(width) + "x" + std::to_string(height) + " texels (1 to " +
            std::to_string(kMostTexels) + " each way)";

@@ -121,6 +121,12 @@ TextureRef importTexture(Import& import, const tinygltf::TextureInfo& use, const
   }
   for (int c = 0; c < 3; ++c)
     if (!isFinite(ref.uvTransform[c])) doc.fail(place, "the texture transform holds a number beyond single precision");
+  constexpr float kMostTurns = 1e6f; // of a texture: beyond, single precision knows no place in it
+  for (int c = 0; c < 3; ++c)
+    if (maxComponent(glm::abs(ref.uvTransform[c])) > kMostTurns) {
+      doc.warn(place + ": the texture transform is beyond what finds a place in a texture (1e6); none instead");
+      ref.uvTransform = mat3(1);
+    }
   if (texCoord == 0 || texCoord == 1)
     ref.uvSet = uint32_t(texCoord);
   else
@@ -237,9 +243,7 @@ uint32_t importMaterial(Import& import, int index) {
     out.alphaMode = AlphaMode::Mask;
     out.alphaCutoff = float(in.alphaCutoff);
   } else if (in.alphaMode == "BLEND") {
-    out.alphaMode = AlphaMode::Mask;
-    out.alphaCutoff = 0.5f;
-    import.counted["material(s) with alpha blending shown with a mask, solid where alpha is at least 0.5"]++;
+    out.alphaMode = AlphaMode::Blend;
   }
   bool coated = false;
   if (in.extensions.contains("KHR_materials_unlit")) { // its colour, with no lobe and no bumps

@@ -358,6 +358,8 @@ Scene loadScene(const std::filesystem::path& file, const std::string& sceneName,
       [&](Entity e, const MeshInstance& m, const WorldTransform& w) { far += poseOf(scene, e, m, w).has_value(); });
   forEachPosed(scene, [&](const Mesh&, const DeformedMesh*, const mat4&) { --far; });
   if (far > 0) scene.warnings.push_back(std::to_string(far) + " object(s) that reach beyond 1e12 m left out");
+  if (worldBounds(scene).empty() && scene.registry.count<MeshInstance>() > 0)
+    scene.warnings.push_back("nothing of the scene has a size, or lies within 1e12 m: the picture is empty");
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include "engine/core/sampling.h"
 #include "engine/scene/placed_triangles.h"
 #include "engine/view/surface_point.h"
+#include "shaders/shared/coverage.h"
 
 #include <algorithm>
 #include <array>
@@ -69,13 +70,13 @@ const Primitive& primitiveOf(const Mesh& mesh, uint32_t triangle) {
   });
 }
 
-/// Whether a triangle is masked, and cut out at a place of it.
-bool isCutOut(const SceneAssets& assets, const Mesh& mesh, uint32_t triangle, const vec2& barycentric) {
+/// Whether a triangle is masked, and cut out at a place of it, or blended, and not there for that key.
+bool isCutOut(const SceneAssets& assets, const Mesh& mesh, uint32_t triangle, const vec2& barycentric, uint32_t key) {
   const Primitive& p = primitiveOf(mesh, triangle);
   const Material& material = assets.materials[p.material];
-  return material.alphaMode == AlphaMode::Mask &&
-         alphaAt(assets, mesh, material, trianglePlace(mesh, p, triangle - p.firstTriangle, barycentric)) <
-             material.alphaCutoff;
+  if (material.alphaMode == AlphaMode::Opaque) return false;
+  const float alpha = alphaAt(assets, mesh, material, trianglePlace(mesh, p, triangle - p.firstTriangle, barycentric));
+  return material.alphaMode == AlphaMode::Mask ? alpha < material.alphaCutoff : !isCovered(alpha, key, 0, triangle);
 }
 
 /// Follows rays to their ends.
@@ -121,7 +122,7 @@ class Tracing {
     if (!met || !(met->t > skipped && met->t < ray.end)) return;
     if (ray.looks && isHiddenBack(block, triangle, glm::dot(met->normal, ray.direction))) {
       ray.passed.push_back(met->t);
-    } else if (isCutOut(assets_, block.mesh, triangle, met->barycentric)) {
+    } else if (isCutOut(assets_, block.mesh, triangle, met->barycentric, rayKey(met->normal, ray.direction))) {
       if (!ray.leads) ray.passed.push_back(met->t);
     } else {
       ray.end = met->t, ray.normal = met->normal;
@@ -204,7 +205,7 @@ std::vector<Ray> surfaceRays(const Scene& scene, const std::vector<double>& area
       passed += scale * areaOf(mesh, positions, i);
       for (; next != drawn.end() && *next < passed; ++next) {
         const vec2 place = sampleTriangle(random.next2());
-        if (isCutOut(scene.assets, mesh, i, place)) continue;
+        if (isCutOut(scene.assets, mesh, i, place, rayKey(vec3(place, 0), vec3(0)))) continue;
         rays.push_back(
             rayFrom(TriangleBlock{mesh, deformed, worldFromObject, {}, {}}.corners(i), place, worldFromObject, random));
       }
@@ -318,8 +319,7 @@ void refuseSlowRays(const Scene& scene, const RayWork& work) {
   const dvec3 at = dvec3(work.place) + scene.origin;
   std::ostringstream text;
   text << "every ray looks at " << std::lround(work.sum()) << " triangles in the mean";
-  if (work.cutOut >= 1)
-    text << ", " << std::lround(work.cutOut) << " that are cut out or blended counted 7 times";
+  if (work.cutOut >= 1) text << ", " << std::lround(work.cutOut) << " that are cut out or blended counted 7 times";
   text << " (most from " << at.x << ", " << at.y << ", " << at.z
        << "): pictures would take very long; thin them out, or --allow-large";
   throw InputError(scene.file.string(), text.str());

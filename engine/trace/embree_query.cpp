@@ -4,6 +4,7 @@
 #include "engine/core/memory.h"
 #include "engine/trace/surface_hit.h"
 #include "engine/view/surface_point.h"
+#include "shaders/shared/coverage.h"
 
 #if EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -11,6 +12,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -30,7 +32,7 @@ struct GeometryData {
 /// Of this thread, since they were last added up.
 thread_local uint64_t alphaTests = 0;
 
-/// Lets rays through where an alpha-masked material is cut out.
+/// Lets rays through where an alpha-masked material is cut out, or a blended one not there for them.
 void alphaFilter(const RTCFilterFunctionNArguments* args) {
   const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
   const Mesh& mesh = data.assets->meshes[data.mesh];
@@ -39,10 +41,15 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
     ++alphaTests;
-    if (material.alphaMode != AlphaMode::Mask) continue;
+    if (material.alphaMode == AlphaMode::Opaque) continue;
     const vec2 barycentric(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
     const TrianglePlace place = trianglePlace(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric);
-    if (alphaAt(*data.assets, mesh, material, place) < material.alphaCutoff) args->valid[i] = 0;
+    const float alpha = alphaAt(*data.assets, mesh, material, place);
+    const bool there = material.alphaMode == AlphaMode::Mask
+                           ? alpha >= material.alphaCutoff
+                           : isCovered(alpha, RTCRayN_id(args->ray, args->N, i),
+                                       RTCHitN_instID(args->hit, args->N, i, 0), RTCHitN_primID(args->hit, args->N, i));
+    if (!there) args->valid[i] = 0;
   }
 }
 
@@ -95,7 +102,11 @@ void intersect16(const int* valid, RTCScene s, TraceArguments& a, RTCRayHit16* r
 }
 #endif
 
-void fillRay(RTCRay& out, const Ray& r) {
+uint32_t keyOf(const Ray& r, bool blends) {
+  return r.key != 0 || !blends ? r.key : rayKey(r.origin, r.direction);
+}
+
+void fillRay(RTCRay& out, const Ray& r, bool blends) {
   out.org_x = r.origin.x;
   out.org_y = r.origin.y;
   out.org_z = r.origin.z;
@@ -106,7 +117,7 @@ void fillRay(RTCRay& out, const Ray& r) {
   out.time = 0;
   out.tfar = r.tMax;
   out.mask = ~0u;
-  out.id = 0;
+  out.id = keyOf(r, blends);
   out.flags = 0;
 }
 
@@ -169,6 +180,7 @@ struct EmbreeQuery::State {
 
   AlphaTest alphaTest = AlphaTest::Masked;
   bool textures = true;
+  bool blends = false; // a material of the assets
   mutable std::atomic<uint64_t> alphaTests{0}, textureLookups{0};
 
   explicit State(const SceneAssets& a) : assets(a) {}
@@ -199,7 +211,7 @@ struct EmbreeQuery::State {
 void EmbreeQuery::State::applyAlphaTest(RTCGeometry g, uint32_t mesh, uint32_t p) {
   const Material& material = assets.materials[assets.meshes[mesh].primitives[p].material];
   const bool tested =
-      alphaTest == AlphaTest::All || (alphaTest == AlphaTest::Masked && material.alphaMode == AlphaMode::Mask);
+      alphaTest == AlphaTest::All || (alphaTest == AlphaTest::Masked && material.alphaMode != AlphaMode::Opaque);
   rtcSetGeometryUserData(g, &geometryData[mesh][p]);
   rtcSetGeometryIntersectFilterFunction(g, tested ? alphaFilter : nullptr);
   rtcSetGeometryOccludedFilterFunction(g, tested ? alphaFilter : nullptr);
@@ -318,6 +330,7 @@ EmbreeQuery::EmbreeQuery(const SceneAssets& assets) : state_(std::make_unique<St
 
 void EmbreeQuery::takeAssets() {
   State& s = *state_;
+  s.blends = std::ranges::any_of(s.assets.materials, &Material::blends);
   for (uint32_t m = 0; m < s.assets.meshes.size(); ++m) {
     const Mesh& mesh = s.assets.meshes[m];
     if (m < s.meshes.size()) {
@@ -398,7 +411,7 @@ void EmbreeQuery::trace(std::span<const Ray> rays, std::span<SurfaceHit> hits, b
     SurfaceHit& hit = hits[i] = {};
     if (!s.traces(rays[i])) continue;
     RTCRayHit rh;
-    fillRay(rh.ray, rays[i]);
+    fillRay(rh.ray, rays[i], s.blends);
     rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     intersect1(s.top, arguments, &rh);
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
@@ -437,7 +450,8 @@ void EmbreeQuery::distances(std::span<const Ray> rays, std::span<float> t) const
       packet.ray.tnear[j] = packet.ray.time[j] = 0;
       packet.ray.tfar[j] = ray.tMax;
       packet.ray.mask[j] = ~0u;
-      packet.ray.id[j] = packet.ray.flags[j] = 0;
+      packet.ray.id[j] = keyOf(ray, state_->blends);
+      packet.ray.flags[j] = 0;
       packet.hit.geomID[j] = packet.hit.instID[0][j] = RTC_INVALID_GEOMETRY_ID;
     }
     intersect16(valid.data(), state_->top, arguments, &packet);
@@ -454,7 +468,7 @@ void EmbreeQuery::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked
     blocked[i] = 0;
     if (!state_->traces(rays[i])) continue;
     RTCRay ray;
-    fillRay(ray, rays[i]);
+    fillRay(ray, rays[i], state_->blends);
     occluded1(state_->top, arguments, &ray);
     blocked[i] = ray.tfar < 0;
   }

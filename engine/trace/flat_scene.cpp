@@ -46,7 +46,7 @@ FlatScene::FlatScene(const SceneAssets& assets) : assets_(assets) {
   for (const Mesh& mesh : assets.meshes) {
     std::vector<uint32_t>& masks = masksOfMeshes_.emplace_back();
     for (const Primitive& p : mesh.primitives) {
-      if (assets.materials[p.material].alphaMode != AlphaMode::Mask) continue;
+      if (assets.materials[p.material].alphaMode == AlphaMode::Opaque) continue;
       masks.resize(mesh.triangles.size(), kNone);
       for (uint32_t t = 0; t < p.triangleCount; ++t) masks[p.firstTriangle + t] = maskOf(mesh, p, p.firstTriangle + t);
     }
@@ -87,7 +87,9 @@ uint32_t FlatScene::maskOf(const Mesh& mesh, const Primitive& primitive, uint32_
     const vec3 at = ref.uvTransform * vec3(uv.empty() ? vec2(0) : uv[vertex], 1);
     mask.corners[c] = vec4(at.x, at.y, material.alpha * (mesh.colors.empty() ? 1 : mesh.colors[vertex].w), 0);
   }
-  mask.corners[0].w = material.alphaCutoff;
+  const bool blended = material.alphaMode == AlphaMode::Blend;
+  mask.corners[0].w = blended ? -1 : material.alphaCutoff;
+  mask.corners[1].w = float(triangle - primitive.firstTriangle);
   masks_.push_back(mask);
   return uint32_t(masks_.size() - 1);
 }

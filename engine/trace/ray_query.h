@@ -15,6 +15,7 @@ struct Ray {
   vec3 origin{0};
   vec3 direction{0, 0, 1};
   float tMax = kInfinity;
+  uint32_t key = 0; // of chances of meeting what is blended (shaders/shared/coverage.h); 0: by its own bits
 };
 
 /// Says whether a ray can be traced: others meet nothing.

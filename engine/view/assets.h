@@ -24,7 +24,7 @@ enum class Minify : uint8_t {
   NearestMipmapLinear,
   LinearMipmapLinear
 };
-enum class AlphaMode : uint8_t { Opaque, Mask };
+enum class AlphaMode : uint8_t { Opaque, Mask, Blend }; // Blend: shaders/shared/coverage.h
 /// Which surfaces' alpha is tested: none (masks count as solid), masked ones, or all, which lets the others pass.
 enum class AlphaTest : uint8_t { None, Masked, All };
 
@@ -72,6 +72,7 @@ struct Material {
   bool doubleSided = false;
   bool backHidden = false; // the eye looks through its back, as glTF has it where not doubleSided; light does not
 
+  bool blends() const { return alphaMode == AlphaMode::Blend; }
   bool emits() const { return maxComponent(emission) > 0; }
   /// Says whether the material is anything but Lambert; a texture may make it so.
   bool glossy() const { return roughness < 1 || metalness > 0 || roughnessMetalnessTexture.image != kNone; }

@@ -164,7 +164,7 @@ void savePreferences(const Preferences& p, const fs::path& file) {
   writeAtomically(file, [&](const fs::path& temporary) {
     std::ofstream out(temporary);
     out << j.dump(2) << "\n";
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
+    if (!out.flush()) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });
 }
 

@@ -23,6 +23,7 @@ struct GBuffer {
   const gl::Texture* finish = nullptr;
   /// RGBA16F as `normal`, by normal maps: of light, never of places; null: the same.
   const gl::Texture* mappedNormal = nullptr;
+  const gl::Texture* blended = nullptr;    // R8: 1 where a blended surface is, seen or not; null: nowhere
   const gl::BufferSlice* camera = nullptr; // uniform block CameraBlock (shaders/shared/camera_block.h)
   CameraBlock block;                       // what `camera` holds
   int width = 0, height = 0;
@@ -52,9 +53,9 @@ struct HostConventions {
 /// clipFromView(camera, far) of the view's camera gives it.
 struct HostSurfaces {
   uint32_t depth = 0, normal = 0;
-  uint32_t albedo = 0;             // 0: who composes the image knows it; light does without
-  uint32_t emission = 0;           // 0: nothing glows
-  uint32_t finish = 0;             // 0: all is Lambert; of hosts with our conventions only; RG: blue 0, alpha 1
+  uint32_t albedo = 0;   // 0: who composes the image knows it; light does without
+  uint32_t emission = 0; // 0: nothing glows
+  uint32_t finish = 0;   // 0: all is Lambert; of hosts with our conventions only; RG: blue 0, alpha 1
   HostConventions conventions = {};
 };
 

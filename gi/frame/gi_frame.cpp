@@ -3,6 +3,7 @@
 #include "engine/core/error.h"
 #include "engine/core/free_memory.h"
 #include "engine/core/memory.h"
+#include "engine/core/open_watch.h"
 #include "engine/gl/context.h"
 #include "engine/gl/state_guard.h"
 #include "gi/contract/frame_outputs.h"
@@ -148,6 +149,10 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   }
   k.outputs.inside = indirect.inside();
   k.end(begin, before);
+  if (OpenWatch::any()) {
+    glFinish(); // drivers that draw on the CPU draw later
+    OpenWatch::end();
+  }
   return stats;
 }
 

@@ -3,6 +3,7 @@
 #include "engine/core/parallel.h"
 #include "gi/lighting/receivers.h"
 #include "gi/vpl/smc.h"
+#include "shaders/shared/coverage.h"
 
 namespace lambent {
 
@@ -13,12 +14,14 @@ float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area,
 }
 
 std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points,
-                                   const SceneView* normalMaps) {
+                                   const SceneView* normalMaps, std::optional<uint32_t> key) {
   std::vector<Ray> block;
   const vec3 forward = -vec3(camera.worldFromView[2]);
   for (const vec2& p : points) {
     const CameraRay r = cameraRay(camera, p.x, p.y);
-    block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction});
+    const ivec2 pixel(vec2(p.x, 1 - p.y) * vec2(camera.width, camera.height)); // from the bottom
+    block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction, kInfinity,
+                     key.value_or(pixelKey(uint32_t(pixel.x), uint32_t(pixel.y)))});
   }
   std::vector<SurfaceHit> hits(block.size());
   rays.seen(block, hits);

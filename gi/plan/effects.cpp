@@ -81,7 +81,7 @@ struct SceneFacts {
         const Material& m = view.assets->materials[p.material];
         emissive += m.emits();
         emittersMoved |= m.emits() && i.moved;
-        masked += m.alphaMode == AlphaMode::Mask;
+        masked += m.alphaMode != AlphaMode::Opaque;
         textured += m.baseColorTexture.image != kNone;
         reflecting += reflects(m);
         glossy += m.glossy();
@@ -138,8 +138,8 @@ EffectPlan planEffects(const SceneView& view, const Settings& settings, const Fr
                                                                          : "no material emits"});
   const bool sky = !view.sky.black();
   const bool skyLight = decide(EffectId::Sky, {sky, sky ? "the sky has radiance" : "the sky is black"});
-  decide(EffectId::Alpha, {scene.masked > 0, scene.masked > 0 ? count(scene.masked, "alpha-masked surface")
-                                                              : "no material has an alpha mask"});
+  decide(EffectId::Alpha, {scene.masked > 0, scene.masked > 0 ? count(scene.masked, "alpha-masked or blended surface")
+                                                              : "no material has an alpha mask or blends"});
   const bool anyLight = scene.punctual > 0 || (emissive && scene.emissive > 0) || (skyLight && sky);
   const bool indirect = decide(EffectId::Indirect, whyNoIndirect(anyLight));
   const bool lights = indirect && needs.lights != LightSupply::None;

@@ -4,9 +4,11 @@
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
+#include "engine/view/surface_point.h"
 #include "gi/lighting/light_paths.h"
 #include "gi/lighting/receivers.h"
 #include "gi/vpl/smc.h"
+#include "shaders/shared/coverage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,9 +23,48 @@ constexpr size_t kBlockPixels = 16; // small images still keep all threads busy
 std::vector<SurfaceHit> primaryHits(const ReferenceInputs& in, size_t begin, size_t end) {
   const CameraView& camera = in.camera;
   std::vector<vec2> centres;
-  for (size_t i = begin; i < end; ++i)
-    centres.push_back(pixelCentre(camera, i));
+  for (size_t i = begin; i < end; ++i) centres.push_back(pixelCentre(camera, i));
   return surfacesAt(in.rays, camera, centres, in.normalMaps);
+}
+
+/// Which of the pixels [begin, end) blended surfaces lie in: those that blend.frag mixes.
+std::vector<uint8_t> blendedAt(const ReferenceInputs& in, size_t begin, size_t end) {
+  std::vector<vec2> centres;
+  for (size_t i = begin; i < end; ++i) centres.push_back(pixelCentre(in.camera, i));
+  const std::vector<SurfaceHit> first = surfacesAt(in.rays, in.camera, centres, nullptr, kMeetsAll);
+  std::vector<uint8_t> out;
+  for (const SurfaceHit& h : first) {
+    out.push_back(0);
+    if (!h.valid()) continue;
+    const SceneAssets& assets = *in.blended->assets;
+    const Mesh& mesh = assets.meshes[in.blended->instances[h.instance].mesh];
+    const Primitive& primitive = mesh.primitives[h.primitive];
+    const Material& material = assets.materials[primitive.material];
+    if (material.alphaMode != AlphaMode::Blend) continue;
+    const TrianglePlace place = trianglePlace(mesh, primitive, h.triangle, h.barycentric);
+    out.back() = alphaAt(assets, mesh, material, place) < 1 - kLeastBlended;
+  }
+  return out;
+}
+
+/// As blend.frag.
+Image mixed(const Image& image, const std::vector<uint8_t>& blended) {
+  Image out = image;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      if (!blended[size_t(y) * size_t(image.width) + size_t(x)]) continue;
+      vec3 sum(0);
+      float weights = 0;
+      for (int j = std::max(0, y - kMixReach); j <= std::min(image.height - 1, y + kMixReach); ++j)
+        for (int i = std::max(0, x - kMixReach); i <= std::min(image.width - 1, x + kMixReach); ++i)
+          if (blended[size_t(j) * size_t(image.width) + size_t(i)]) {
+            const float weight = mixWeight(vec2(i - x, j - y));
+            sum += weight * image.at(i, j);
+            weights += weight;
+          }
+      out.at(x, y) = sum / weights;
+    }
+  return out;
 }
 
 /// One path's present vertex. `weight` turns irradiance/π here into irradiance/π at the primary hit.
@@ -102,6 +143,7 @@ class BlockTracer {
       LightConnection c = connection(p);
       if (glossyAt(vertex)) c.value *= kPi * reflectanceOf(receivers_[p.pixel], glm::normalize(c.segment.direction));
       if (maxComponent(c.value) <= 0) continue;
+      if (in_.blended) c.segment.key = keyFor(p);
       segments_.push_back(c.segment);
       pending_.push_back(c.value);
       owners_.push_back(i);
@@ -121,7 +163,7 @@ class BlockTracer {
       // Under the real surface of a smooth-shaded one: the path ends, as a ray of length zero.
       const bool above = glm::dot(direction, p.vertex.geometricNormal) > 0;
       segments_.push_back({offsetPoint(p.vertex.position, p.vertex.geometricNormal, in_.rays.rayEpsilon()), direction,
-                           above ? kInfinity : 0.0f});
+                           above ? kInfinity : 0.0f, in_.blended ? keyFor(p) : 0});
     }
     hits_.resize(segments_.size());
     in_.rays.closest(segments_, hits_);
@@ -145,6 +187,8 @@ class BlockTracer {
     }
     paths_.erase(paths_.begin() + long(alive), paths_.end());
   }
+
+  static uint32_t keyFor(Path& p) { return p.rng.nextUint() >> 1 | 1; }
 
   bool glossyAt(int vertex) const { return vertex == 0 && !receivers_.empty(); }
 
@@ -249,7 +293,12 @@ ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& i
     glm::dvec3 total{0}, variance{0};
   };
   std::vector<Row> rows(size_t(sums.height));
+  const bool mixes = in.blended && !irradiance;
+  std::vector<uint8_t> blended(mixes ? sums.pixels.size() : 0);
   parallelFor(rows.size(), 1, [&](size_t firstRow, size_t lastRow) {
+    if (mixes)
+      std::ranges::copy(blendedAt(in, firstRow * sums.width, lastRow * sums.width),
+                        blended.begin() + long(firstRow * sums.width));
     for (size_t i = firstRow * sums.width; i < lastRow * sums.width; ++i) {
       const SurfaceHit h = primaryHits(in, i, i + 1)[0];
       Row& row = rows[i / sums.width];
@@ -271,6 +320,7 @@ ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& i
       row.total += glm::dvec3(mean);
     }
   });
+  if (mixes) image.mean = mixed(image.mean, blended);
   glm::dvec3 total(0), variance(0);
   for (const Row& r : rows) total += r.total, variance += r.variance;
   const double count = 3 * double(sums.pixels.size()), sum = total.x + total.y + total.z;

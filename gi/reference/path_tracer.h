@@ -24,6 +24,7 @@ struct ReferenceInputs {
   /// Lambert.
   const SceneView* glossy = nullptr;
   const SceneView* normalMaps = nullptr; // primary hits have the normals of this view's maps; null: the meshes' own
+  const SceneView* blended = nullptr; // has blended materials, which rays meet by chance and images mix; null: none
   /// Another thread sets it to make addSamples return soon; what was added is then part of a pass and of no use.
   const std::atomic<bool>* stopped = nullptr;
 };

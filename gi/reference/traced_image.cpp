@@ -1,5 +1,6 @@
 #include "gi/reference/traced_image.h"
 
+#include "engine/core/open_watch.h"
 #include "engine/image/exposure.h"
 #include "engine/trace/embree_query.h"
 #include "gi/reference/state_file.h"
@@ -77,6 +78,10 @@ bool tracesNormalMaps(const SceneView& view, const Settings& settings) {
          std::ranges::any_of(view.assets->materials, [](const Material& m) { return m.normalTexture.image != kNone; });
 }
 
+bool tracesBlended(const SceneView& view) {
+  return view.assets && std::ranges::any_of(view.assets->materials, &Material::blends);
+}
+
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan) {
   EmbreeQuery rays(*view.assets);
   rays.update(view);
@@ -89,8 +94,10 @@ TracedImage traceImage(const SceneView& view, const Settings& settings, const Tr
                            .seed = plan.seed,
                            .glossy = tracesGlossy(view, settings, plan.buffer) ? &view : nullptr,
                            .normalMaps = tracesNormalMaps(view, settings) ? &view : nullptr,
+                           .blended = tracesBlended(view) ? &view : nullptr,
                            .stopped = plan.stopped};
   TracedImage out{.bounces = in.bounces, .clamp = in.clamp};
+  OpenWatch::end(); // paths take what they are asked for
   const ReferenceSums sums = sampled(plan, in, referenceKey(view, in), out);
   if (out.samples == 0) return out;
   out.image = readReference(sums, in, plan.buffer);

@@ -94,6 +94,7 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
                     &emission_,
                     glossy ? &finish_ : nullptr,
                     mapped ? &mappedNormal_ : nullptr,
+                    converted || !in.scene.blends() ? nullptr : &blended_,
                     &camera_,
                     block,
                     width,
@@ -109,7 +110,24 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   for (int i = 0; i < 5; ++i) glClearNamedFramebufferfv(framebuffer_.name(), GL_COLOR, i, zero);
   glClearNamedFramebufferfv(framebuffer_.name(), GL_DEPTH, 0, zero);
   in.scene.drawSeen(gBufferWith(glossy, mapped), block.clipFromWorld, in.camera.position());
+  if (out.blended) drawBlended(in);
   return out;
+}
+
+/// Where blended surfaces lie before what the pixels show, or are that.
+void SurfacePass::drawBlended(const SurfaceInputs& in) {
+  const int width = depth_.width(), height = depth_.height();
+  if (!blended_ || blended_.width() != width || blended_.height() != height || blendedDepth_ != depth_.name()) {
+    blended_ = gl::Texture("g-buffer/blended", {.format = GL_R8, .width = width, .height = height});
+    blendedFramebuffer_ = gl::Framebuffer("g-buffer/blended", {&blended_}, &depth_);
+    blendedDepth_ = depth_.name();
+  }
+  blendedFramebuffer_.bind();
+  gl::PipelineState{.depthTest = true, .depthWrite = false, .depthFunc = GL_GEQUAL, .width = width, .height = height}
+      .apply();
+  const float zero[4] = {0, 0, 0, 0};
+  glClearNamedFramebufferfv(blendedFramebuffer_.name(), GL_COLOR, 0, zero);
+  in.scene.drawSeen(DrawKind::Blended, block_.clipFromWorld, in.camera.position());
 }
 
 void SurfacePass::keepPrevious(bool any) {
@@ -204,6 +222,7 @@ GBuffer SurfacePass::adopt(const SurfaceInputs& in) {
               take(hosts_[3], host.emission),
               in.glossy ? take(hosts_[4], host.finish) : nullptr,
               nullptr, // what hosts draw is one normal
+              nullptr,
               &camera_,
               {},
               width,

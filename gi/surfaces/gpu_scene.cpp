@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 
 namespace lambent {
 
@@ -42,6 +43,7 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   items_.clear();
   bounds_ = {};
   triangleCount_ = 0;
+  blends_ = false;
   for (uint32_t i = 0; i < instances.size(); ++i) {
     const InstanceView& instance = instances[i];
     const mat4 transposed = glm::transpose(instance.worldFromObject);
@@ -56,6 +58,7 @@ void GpuScene::place(std::span<const InstanceView> instances) {
                         instance.deformed != nullptr, mirrored});
       bounds_.add(items_.back().boundsWorld);
       triangleCount_ += range.indexCount / 3;
+      blends_ |= materialDraws_[range.material].alphaMode == AlphaMode::Blend;
     }
   }
   // Sorted once here, not per draw: by material, since binding one costs more than anything else of a draw.
@@ -68,8 +71,22 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   const uint64_t bytes = std::max<size_t>(1, rows.size()) * sizeof(vec4);
   if (!instanceRows_ || instanceRows_.bytes() < bytes)
     instanceRows_ = gl::Buffer("scene/instances", bytes + bytes / 2, nullptr);
-  for (const gl::VertexArray* array : {&vertexArray_, &deformed_.array})
-    if (*array) glVertexArrayVertexBuffer(array->name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
+  if (const size_t count = instanceRows_.bytes() / (3 * sizeof(vec4));
+      blends_ && (!instanceIndices_ || instanceIndices_.bytes() < count * sizeof(uint32_t))) {
+    std::vector<uint32_t> indices(count);
+    std::iota(indices.begin(), indices.end(), 0u);
+    instanceIndices_ = gl::Buffer::of<uint32_t>("scene/instance indices", indices);
+  }
+  for (const gl::VertexArray* array : {&vertexArray_, &deformed_.array}) {
+    if (!*array) continue;
+    glVertexArrayVertexBuffer(array->name(), kInstanceBinding, instanceRows_.name(), 0, 3 * sizeof(vec4));
+    if (!blends_) continue;
+    glEnableVertexArrayAttrib(array->name(), kIndexBinding);
+    glVertexArrayAttribIFormat(array->name(), kIndexBinding, 1, GL_UNSIGNED_INT, 0);
+    glVertexArrayAttribBinding(array->name(), kIndexBinding, kIndexBinding);
+    glVertexArrayVertexBuffer(array->name(), kIndexBinding, instanceIndices_.name(), 0, sizeof(uint32_t));
+    glVertexArrayBindingDivisor(array->name(), kIndexBinding, 1);
+  }
   changes_.upload(instanceRows_, 0, rows.size() * sizeof(vec4), rows.data());
 }
 
@@ -101,10 +118,12 @@ bool showsNormalMaps(DrawKind kind) { return kind == DrawKind::MappedGBuffer || 
 const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
   gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth            ? "depth.frag"
                                      : kind == DrawKind::DistanceNormal ? "distance_normal.frag"
+                                     : kind == DrawKind::Blended        ? "blended.frag"
                                                                         : "gbuffer.frag"};
   const bool shows = showsMaterials(kind);
   if (!shows) desc.defines.push_back("DEPTH_ONLY");
   if (kind == DrawKind::DistanceNormal) desc.defines.push_back("POSITION");
+  if (material.alphaMode == AlphaMode::Blend && tested(material)) desc.defines.push_back("ALPHA_BLEND");
   if (tested(material))
     desc.defines.push_back("ALPHA_MASK");
   else if (shows && context_.drawnByCpu)
@@ -138,7 +157,9 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   std::vector<const Item*> shown;
   for (const Item& item : items_) {
     const Instances is = rest_[item.instance] == kRested ? Instances::Still : Instances::Moving;
-    if ((which == Instances::All || which == is) && frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
+    if (which != Instances::All && which != is) continue;
+    if (kind == DrawKind::Blended && materialDraws_[item.range.material].alphaMode != AlphaMode::Blend) continue;
+    if (frustum.mayShow(item.boundsWorld)) shown.push_back(&item);
   }
   if (shown.empty()) return 0;
   // Depth and distance look the same in any order, and without alpha test whatever the material: those go first, as one

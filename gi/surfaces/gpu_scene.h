@@ -26,8 +26,8 @@ struct Frustum {
 };
 
 /// What a draw writes: the G-buffer, the same with roughness and metalness, with mapped normals, or both; distance
-/// (metres) and geometric normal of what the eye sees; or depth alone.
-enum class DrawKind { GBuffer, GlossyGBuffer, MappedGBuffer, GlossyMappedGBuffer, DistanceNormal, Depth };
+/// (metres) and geometric normal of what the eye sees; depth alone; or where blended materials are, and nothing else.
+enum class DrawKind { GBuffer, GlossyGBuffer, MappedGBuffer, GlossyMappedGBuffer, DistanceNormal, Depth, Blended };
 inline DrawKind gBufferWith(bool glossy, bool mapped) { return DrawKind(int(glossy) + 2 * int(mapped)); }
 
 /// Which instances are drawn: those that have not moved for a while, those that have, or both.
@@ -65,12 +65,14 @@ class GpuScene {
   /// process has.
   uint64_t stillVersion() const { return stillVersion_; }
 
+  /// Says whether an instance has a blended material.
+  bool blends() const { return blends_; }
   uint64_t testedDraws() const { return testedDraws_; }     // so far, of materials whose alpha is tested
   uint32_t triangleCount() const { return triangleCount_; } // of all placed instances
   const Aabb& bounds() const { return bounds_; }            // world space
 
  private:
-  static constexpr GLuint kInstanceBinding = 4;
+  static constexpr GLuint kInstanceBinding = 4, kIndexBinding = 8;
   static constexpr uint64_t kMostCommandBytes = uint64_t(4) << 20;
   static constexpr uint8_t kRested = 30; // placements without a move after which an instance stands still
 
@@ -82,7 +84,8 @@ class GpuScene {
   struct MaterialDraw {
     GLuint baseTexture, emissiveTexture, roughnessMetalnessTexture, normalTexture; // 0 = none
     GLuint baseSampler, emissiveSampler, finishSampler, normalSampler;
-    bool masked, backHidden;
+    AlphaMode alphaMode;
+    bool backHidden;
   };
   struct MeshRange {
     uint32_t baseVertex, vertexCount;
@@ -121,12 +124,12 @@ class GpuScene {
   uint32_t samplerFor(const TextureRef& ref);
   void bindMaterial(uint32_t index) const;
   bool tested(const MaterialDraw& material) const {
-    return alphaTest_ == AlphaTest::All || (alphaTest_ == AlphaTest::Masked && material.masked);
+    return alphaTest_ == AlphaTest::All || (alphaTest_ == AlphaTest::Masked && material.alphaMode != AlphaMode::Opaque);
   }
   const gl::Program& programFor(DrawKind kind, const MaterialDraw& material) const;
 
   PassContext context_;
-  gl::Buffer positions_, normals_, uvs_, colors_, tangents_, indices_, instanceRows_, materials_;
+  gl::Buffer positions_, normals_, uvs_, colors_, tangents_, indices_, instanceRows_, instanceIndices_, materials_;
   gl::Ring changes_{"scene/changes"}; // of instances and deformed vertices
   mutable gl::Ring commands_{"scene/draws"};
   gl::VertexArray vertexArray_;
@@ -143,6 +146,7 @@ class GpuScene {
   std::vector<Item> items_; // sorted by material
   Aabb bounds_;
   uint32_t triangleCount_ = 0;
+  bool blends_ = false;
   AlphaTest alphaTest_ = AlphaTest::Masked;
   mutable uint64_t testedDraws_ = 0;
 };

@@ -349,11 +349,10 @@ void GpuScene::uploadMaterials(const SceneAssets& assets) {
     const Material& m = assets.materials[i];
     const MaterialBlock block = blockOf(m);
     std::memcpy(bytes.data() + i * materialStride_, &block, sizeof block);
-    materialDraws_.push_back({textureOf(m.baseColorTexture), textureOf(m.emissiveTexture),
-                              textureOf(m.roughnessMetalnessTexture), textureOf(m.normalTexture),
-                              samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture),
-                              samplerOf(m.roughnessMetalnessTexture), samplerOf(m.normalTexture),
-                              m.alphaMode == AlphaMode::Mask, m.backHidden});
+    materialDraws_.push_back(
+        {textureOf(m.baseColorTexture), textureOf(m.emissiveTexture), textureOf(m.roughnessMetalnessTexture),
+         textureOf(m.normalTexture), samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture),
+         samplerOf(m.roughnessMetalnessTexture), samplerOf(m.normalTexture), m.alphaMode, m.backHidden});
   }
   materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);
 }

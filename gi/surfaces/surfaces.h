@@ -40,6 +40,7 @@ class SurfacePass {
   GBuffer adopt(const SurfaceInputs& in);
   void convert(const HostSurfaces& host);
   void keepPrevious(bool any);
+  void drawBlended(const SurfaceInputs& in);
 
   PassContext context_;
   gl::Texture depth_, normal_, albedo_, emission_, finish_, mappedNormal_;
@@ -47,6 +48,9 @@ class SurfacePass {
   gl::Texture black_;    // emission of a host that has none
   gl::Sampler plain_;    // a host's texture may want mipmaps that it does not have
   gl::Framebuffer framebuffer_;
+  gl::Texture blended_;
+  gl::Framebuffer blendedFramebuffer_;
+  GLuint blendedDepth_ = 0; // the depth that it is made with
   gl::Ring cameras_{"g-buffer/camera"};
   gl::BufferSlice camera_; // of the last run
   gl::Texture depthBefore_, normalBefore_;

@@ -33,7 +33,22 @@ const gl::Texture& CompositePass::run(const CompositeInputs& in) {
   framebuffer_.bind();
   gl::PipelineState{.width = width, .height = height}.apply();
   gl::drawFullscreen();
-  return radiance_;
+  return in.surfaces.blended ? mixBlended(*in.surfaces.blended) : radiance_;
+}
+
+const gl::Texture& CompositePass::mixBlended(const gl::Texture& blended) {
+  const int width = radiance_.width(), height = radiance_.height();
+  if (!mixed_ || mixed_.width() != width || mixed_.height() != height) {
+    mixed_ = gl::Texture("composite/mixed", {.format = GL_RGBA32F, .width = width, .height = height});
+    mixedFramebuffer_ = gl::Framebuffer("composite/mixed", {&mixed_});
+  }
+  context_.programs.get({.fragment = "blend.frag"}).use();
+  radiance_.bind(2);
+  blended.bind(3);
+  mixedFramebuffer_.bind();
+  gl::PipelineState{.width = width, .height = height}.apply();
+  gl::drawFullscreen();
+  return mixed_;
 }
 
 float ExposureMeter::measureNow(const gl::Texture& radiance) {

@@ -39,9 +39,11 @@ class CompositePass {
   const gl::Texture& run(const CompositeInputs& in);
 
  private:
+  const gl::Texture& mixBlended(const gl::Texture& blended);
+
   PassContext context_;
-  gl::Texture radiance_, black_;
-  gl::Framebuffer framebuffer_;
+  gl::Texture radiance_, black_, mixed_;
+  gl::Framebuffer framebuffer_, mixedFramebuffer_;
   Background background_;
 };
 

@@ -26,6 +26,21 @@ vec4 baseColorAt(vec4 uv01, vec4 vertexColor) {
   return base;
 }
 
+#ifdef ALPHA_MASK
+#ifdef ALPHA_BLEND
+#include "shared/coverage.h"
+layout(location = 6) flat in uint instance;
+#endif
+/// Whether the surface is not there for this pixel.
+bool isCutOut(float alpha) {
+#ifdef ALPHA_BLEND
+  return !isCovered(alpha, pixelKey(uint(gl_FragCoord.x), uint(gl_FragCoord.y)), instance, uint(gl_PrimitiveID));
+#else
+  return alpha < material.emission.a;
+#endif
+}
+#endif
+
 vec3 emissionAt(vec4 uv01) {
 #ifdef EMISSIVE_TEXTURE
   vec2 uv = transformUv(material.emissiveUvU, material.emissiveUvV, uv01);

@@ -2,6 +2,7 @@
 // first order, without a stack: the node's number only grows, so that every ray ends. Storage bindings 1 to 6 belong to it.
 // Meets a triangle where Embree does: edges belong to both triangles, so that nothing slips through joints (Woop et al.
 // 2013, "Watertight ray/triangle intersection"), boxes are widened by what rounding takes (Ize 2013).
+#include "shared/coverage.h"
 #include "shared/ray_scene.h"
 
 layout(std430, binding = 1) restrict readonly buffer RayTop { BvhNode topNodes[]; };
@@ -39,7 +40,7 @@ float rayTexelCoordinate(float uv, int size, uint wrap) {
   return (wrap == 2u ? clamp(uv, -1.0, 2.0) : uv - 2.0 * floor(0.5 * uv)) * float(size);
 }
 
-bool cutOut(RayMask mask, vec2 barycentric) {
+bool cutOut(RayMask mask, vec2 barycentric, uint key, uint instance) {
   vec3 at = mask.corners[0].xyz * (1.0 - barycentric.x - barycentric.y) + mask.corners[1].xyz * barycentric.x +
             mask.corners[2].xyz * barycentric.y;
   float alpha = at.z;
@@ -55,6 +56,7 @@ bool cutOut(RayMask mask, vec2 barycentric) {
                    mix(rayTexel(mask, i.x, i.y + 1), rayTexel(mask, i.x + 1, i.y + 1), f.x), f.y);
     }
   }
+  if (mask.corners[0].w < 0.0) return !isCovered(alpha, key, instance, uint(mask.corners[1].w));
   return alpha < mask.corners[0].w;
 }
 
@@ -76,7 +78,8 @@ bool meetsBox(vec3 lo, vec3 hi, vec3 origin, vec3 inverse, float tMax) {
 vec3 rayTurned(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v; }
 
 /// Where a triangle is met nearer than `hit`, it becomes the hit.
-void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, bool masks, inout RayHit hit, inout bool met) {
+void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, uint key, uint instance, inout RayHit hit,
+                  inout bool met) {
   RayTriangle triangle = rayTriangles[index];
   vec3 a = rayTurned(triangle.p0 - origin, axis), b = rayTurned(triangle.p1 - origin, axis),
        c = rayTurned(triangle.p2 - origin, axis);
@@ -88,7 +91,8 @@ void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, bool masks, ino
   float t = shear.z * (u * a.z + v * b.z + w * c.z) / sum;
   if (!(t > 0.0 && t <= hit.t)) return;
   vec2 barycentric = vec2(v, w) / sum;
-  if (masks && triangle.mask != kRayNone && cutOut(rayMasks[triangle.mask], barycentric)) return;
+  if (testAlpha != 0 && triangle.mask != kRayNone && cutOut(rayMasks[triangle.mask], barycentric, key, instance))
+    return;
   hit.t = t;
   hit.triangle = triangle.triangle;
   hit.barycentric = barycentric;
@@ -96,7 +100,9 @@ void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, bool masks, ino
 }
 
 /// What the ray meets in (0, tMax]; with `any` the first that is found.
-RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any) {
+/// `key`: of chances of meeting what is blended; 0: by the ray itself.
+RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any, uint key) {
+  if (key == 0u) key = rayKey(origin, direction);
   RayHit hit = RayHit(tMax, kRayNone, 0u, vec2(0.0));
   vec3 inverse = rayInverse(direction);
   bool done = false;
@@ -126,7 +132,8 @@ RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any) {
       }
       ++at;
       uint first = instance.firstTriangle + (node.leaf >> 3);
-      for (uint k = 0u; k < (node.leaf & 7u); ++k) meetTriangle(first + k, o, shear, axis, testAlpha != 0, hit, met);
+      for (uint k = 0u; k < (node.leaf & 7u); ++k) 
+        meetTriangle(first + k, o, shear, axis, key, instance.instance, hit, met);
       done = any && met;
     }
     if (met) hit.instance = instance.instance;
@@ -136,4 +143,6 @@ RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any) {
 }
 
 /// Whether something lies on the segment.
-bool rayBlocked(vec3 origin, vec3 direction, float tMax) { return rayHit(origin, direction, tMax, true).instance != kRayNone; }
+bool rayBlocked(vec3 origin, vec3 direction, float tMax, uint key) {
+  return rayHit(origin, direction, tMax, true, key).instance != kRayNone;
+}

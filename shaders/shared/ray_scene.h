@@ -30,11 +30,12 @@ struct RayInstance {
   uint instance;           // into SceneView::instances
 };
 
-/// A triangle whose material is cut out where alpha lies below the cutoff. Its image's alpha is a byte per texel, four
+/// A triangle whose material is cut out where alpha lies below the cutoff, or blended (coverage.h). Its image's alpha is a byte per texel, four
 /// to a word, in rows from v = 0 on.
 struct RayMask {
   vec4 corners[3]; // xy: coordinates in the image, [0,1] being all of it; z: alpha that the texel's is multiplied by;
-                   // w of the first: the cutoff
+                   // w of the first: the cutoff,
+                   // below 0: blended, then of the second which of its primitive's triangles it is
   uint firstTexel;
   int width, height; // 0: no image, its alpha is 1
   uint modes;        // wrapU | wrapV · 4 | nearest · 16; of wraps: 0 repeat, 1 mirrored, 2 clamped

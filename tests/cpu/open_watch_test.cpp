@@ -20,13 +20,17 @@ double spin(double seconds) { // of a clock
 }
 
 TEST(OpenWatch, GrowsWithTheFile) {
-  const OpenWatch::Budget small = OpenWatch::of(0), still = OpenWatch::of(3 << 20), large = OpenWatch::of(103 << 20);
-  EXPECT_EQ(small.seconds, still.seconds);
-  EXPECT_EQ(small.bytes, still.bytes);
-  EXPECT_LT(small.bytes, size_t(1'000'000'000) * (kSanitized ? 10 : 1));
-  EXPECT_LT(small.seconds, 20 * (kSanitized ? 10 : 1));
-  EXPECT_GT(large.seconds, 20 * small.seconds);
-  EXPECT_GT(large.bytes, 20 * small.bytes);
+  constexpr int kSlower = kSanitized ? 10 : 1;
+  for (const bool open : {false, true}) {
+    const auto of = [&](size_t bytes) { return OpenWatch::of(bytes, open); };
+    EXPECT_EQ(of(0).seconds, of(3 << 20).seconds);
+    EXPECT_EQ(of(0).bytes, of(3 << 20).bytes);
+    EXPECT_LT(of(0).bytes, size_t(1'000'000'000) * kSlower);
+    EXPECT_LT(of(0).seconds, 20 * kSlower);
+    EXPECT_GT(of(103 << 20).seconds, 20 * of(0).seconds);
+    EXPECT_GT(of(103 << 20).bytes, 20 * of(0).bytes);
+  }
+  EXPECT_GT(OpenWatch::of(0, true).seconds, OpenWatch::of(0, false).seconds);
 }
 
 TEST(OpenWatch, LetsPassWhatIsWithin) {
@@ -44,7 +48,8 @@ TEST(OpenWatchDeathTest, EndsWhatTakesLong) {
         const OpenWatch watch("slow.gltf", kShare);
         spin(20);
       },
-      testing::ExitedWithCode(2), "error: slow.gltf: takes more to open than a file of its size may: 1 s of processor");
+      testing::ExitedWithCode(2),
+      "error: slow.gltf: takes more until its first picture than a file of its size may: 1 s of processor");
 }
 
 TEST(OpenWatchDeathTest, GivesMoreToWhatIsRead) {
@@ -59,6 +64,40 @@ TEST(OpenWatchDeathTest, GivesMoreToWhatIsRead) {
       testing::ExitedWithCode(7), "");
 }
 
+TEST(OpenWatchDeathTest, GivesAsMuchMoreAsAPictureAsksFor) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto spent = [](double times, double seconds) {
+    OpenWatch watch("asked.gltf", kShare);
+    watch.opened(times);
+    spin(seconds);
+    std::exit(7);
+  };
+  EXPECT_EXIT(spent(1, 20), testing::ExitedWithCode(2), "asked.gltf");
+  EXPECT_EXIT(spent(20, 2), testing::ExitedWithCode(7), "");
+}
+
+TEST(OpenWatchDeathTest, EndsWithTheFirstPictureOrTheNextFile) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        const OpenWatch watch("drawn.gltf", kShare);
+        EXPECT_TRUE(OpenWatch::any());
+        OpenWatch::end();
+        EXPECT_FALSE(OpenWatch::any());
+        spin(2);
+        std::exit(7);
+      },
+      testing::ExitedWithCode(7), "");
+  EXPECT_EXIT(
+      {
+        const OpenWatch before("before.gltf", kShare);
+        const OpenWatch now("now.gltf", 10);
+        spin(2);
+        std::exit(7);
+      },
+      testing::ExitedWithCode(7), "");
+}
+
 TEST(OpenWatchDeathTest, EndsWhatTakesMuch) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
@@ -67,7 +106,8 @@ TEST(OpenWatchDeathTest, EndsWhatTakesMuch) {
         std::vector<char> much(100'000'000, 1);
         spin(20 * double(much[77'777'777]));
       },
-      testing::ExitedWithCode(2), "error: much.gltf: takes more to open than a file of its size may: 36 MB of memory");
+      testing::ExitedWithCode(2),
+      "error: much.gltf: takes more until its first picture than a file of its size may: 36 MB of memory");
 }
 #endif
 

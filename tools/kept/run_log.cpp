@@ -62,7 +62,7 @@ void RunLog::add(const std::string& key, Value run) {
   listAsOwn(file_);
   std::ofstream out(file_, std::ios::app);
   out << (begun_ ? "" : "\n") << lineOf(run) << '\n'; // not behind half a line
-  if (!out.flush()) throw RunError(file_.string() + ": cannot be written");
+  if (!out.flush()) throw RunError(file_.string() + ": cannot be written (is the folder writable, the disk full?)");
   begun_ = true;
   runs_.push_back(std::move(run));
 }

@@ -14,7 +14,7 @@ void writeText(const fs::path& file, const std::string& text) {
   writeAtomically(file, [&](const fs::path& temporary) {
     std::ofstream out(temporary);
     out << text;
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
+    if (!out.flush()) throw RunError(file.string() + ": cannot be written (is the folder writable, the disk full?)");
   });
 }
 

@@ -5,7 +5,6 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/free_memory.h"
-#include "engine/core/open_watch.h"
 #include "engine/core/parallel.h"
 #include "engine/core/resources.h"
 #include "engine/core/text.h"
@@ -30,6 +29,8 @@ namespace lambent {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kDefaultSize = "320x180";
 
 /// For a person to type: nothing that a shell would take for more than a name.
 std::string hintOfContent(const std::string& name) {
@@ -78,7 +79,7 @@ void chooseCamera(LaunchContext& stage, const LaunchOptions& options) {
     throw InputError(eye ? "--eye " + options.eye : "--target " + options.target, "--eye and --target go together");
   if (options.fovDegrees && !(*options.fovDegrees > 1 && *options.fovDegrees < 179))
     throw InputError("--fov", "out of range (1 to 179 degrees)");
-  const auto [width, height] = sizeOf(options.size.empty() ? "320x180" : options.size);
+  const auto [width, height] = sizeOf(options.size.empty() ? kDefaultSize : options.size);
   const std::vector<NamedCamera> cameras = sceneCameras(stage.scene);
   if (eye && !options.camera.empty()) throw InputError("--camera " + options.camera, "and --eye exclude each other");
   stage.cameraGiven = eye || !options.camera.empty();
@@ -151,17 +152,33 @@ std::vector<std::string> notesOfRenamed(const LaunchOptions& options, const std:
   return notes;
 }
 
+/// What a shot sets. Throws InputError that names the shot.
+void applyShot(Settings& settings, const Shot& shot) {
+  try {
+    for (const auto& [name, value] : shot.set) applySetting(settings, name, value);
+  } catch (const InputError& e) {
+    throw InputError(shot.file.string(), std::string("set: ") + e.what());
+  }
+}
+
 /// A shot is a file of somebody's too: what its settings ask for beside the defaults is bounded.
 void refuseHeavyShot(const Shot& shot, const std::string& file) {
   constexpr double kMost = 16; // of what a default frame takes
   Settings settings;
-  for (const auto& [name, value] : shot.set) applySetting(settings, name, value);
+  applyShot(settings, shot);
   const AskedWork asked = workOf(settings);
   if (asked.times <= kMost) return;
   std::ostringstream text;
   text << "its settings ask for " << std::lround(asked.times) << " times the work of the defaults (" << asked.names
        << "; " << kMost << " at most): a first picture would take very long; lower them, or --allow-large";
   throw InputError(file, text.str());
+}
+
+/// What the person asks for beyond a picture of the default size and settings; what a shot asks for is the file's.
+double timesAsked(const LaunchOptions& options, const CameraView& camera) {
+  const auto [width, height] = sizeOf(kDefaultSize);
+  const double pixels = double(camera.width) * double(camera.height) / (double(width) * double(height));
+  return std::max(1.0, pixels) * std::max(1.0, workOf(chosenSettings(options, {})).times);
 }
 
 } // namespace
@@ -179,8 +196,7 @@ std::pair<int, int> sizeOf(const std::string& text) {
 Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot) {
   Settings settings;
   if (!options.preset.empty()) applyPreset(settings, options.preset);
-  if (shot)
-    for (const auto& [name, value] : shot->set) applySetting(settings, name, value);
+  if (shot) applyShot(settings, *shot);
   if (!options.technique.empty()) applyTechnique(settings, options.technique);
   for (const std::string& text : options.set) {
     const size_t equals = text.find('=');
@@ -309,9 +325,12 @@ void chooseUnit(LaunchContext& stage, const LaunchOptions& options) {
 
 std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {
   useThreads(options.threads);
-  std::optional<OpenWatch> watch;
-  if (!options.trust.large) watch.emplace(options.scene);
-  return loadLaunch(options, {});
+  std::unique_ptr<OpenWatch> watch;
+  if (!options.trust.large) watch = std::make_unique<OpenWatch>(options.scene);
+  std::unique_ptr<LaunchContext> stage = loadLaunch(options, {});
+  if (watch) watch->opened(timesAsked(options, stage->camera));
+  stage->watch = std::move(watch);
+  return stage;
 }
 
 std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const LoadStep& step) {
@@ -321,6 +340,9 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
     stage->shot = loadShot(file);
     if (!options.trust.large) refuseHeavyShot(*stage->shot, options.scene);
     file = stage->shot->scene;
+    if (const std::string kind = file.extension().string();
+        kind != ".gltf" && kind != ".glb") // others' files stay shut
+      throw InputError(options.scene, "scene: is not a scene's file (.gltf or .glb)");
   }
   const bool oneOfOurs = stage->shot || file.stem() == file.parent_path().filename(); // hall/hall.gltf
   if (std::error_code error; oneOfOurs && !fs::exists(file, error))

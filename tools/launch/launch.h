@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/memory.h"
+#include "engine/core/open_watch.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/shot.h"
 #include "gi/plan/settings.h"
@@ -62,7 +63,8 @@ class LaunchContext {
   bool cameraGiven = false; // from the command line: overrides the shot's
   Settings settings;
   uint32_t seed = 1;
-  std::vector<std::string> notes; // defaults that were chosen, one line each
+  std::vector<std::string> notes;   // defaults that were chosen, one line each
+  std::unique_ptr<OpenWatch> watch; // until the first picture
 
   /// Poses scene and camera at time t and extracts the view; valid until the next call.
   SceneView at(double t);

@@ -445,6 +445,30 @@ TEST_F(BadInput, APlusInAUriIsAPlus) {
   EXPECT_TRUE(hasWarning(loadScene(folder / "plus.gltf"), "without area")); // of zeros, as the file holds
 }
 
+TEST_F(BadInput, ASceneOfNothingInReachIsSaid) {
+  for (const double scale : {1e20, 0.0}) {
+    GltfBuilder b = oneTriangle();
+    b.json["nodes"][0]["scale"] = {scale, scale, scale};
+    EXPECT_TRUE(hasWarning(b.load(folder), "nothing of the scene has a size, or lies within 1e12 m")) << scale;
+  }
+  EXPECT_FALSE(hasWarning(oneTriangle().load(folder), "nothing of the scene"));
+}
+
+TEST_F(BadInput, TextureTransformsBeyondAnyTextureAreNone) {
+  for (const char* key : {"offset", "scale"}) {
+    GltfBuilder b = oneTriangle();
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    b.json["images"] = {{{"uri", "none.png"}}};
+    b.json["textures"] = {{{"source", 0}}};
+    b.json["materials"] = {
+        {{"pbrMetallicRoughness",
+          {{"baseColorTexture", {{"index", 0}, {"extensions", {{"KHR_texture_transform", {{key, {3e38, 1}}}}}}}}}}}};
+    const Scene scene = b.load(folder);
+    EXPECT_TRUE(hasWarning(scene, "the texture transform is beyond what finds a place in a texture")) << key;
+    EXPECT_EQ(scene.assets.materials.at(0).baseColorTexture.uvTransform, mat3(1)) << key;
+  }
+}
+
 TEST_F(BadInput, WhatIsFarAwayIsLeftOut) {
   GltfBuilder b = oneTriangle();
   b.addRoot({{"mesh", 0}, {"translation", {1e19, 0, 0}}});

@@ -89,6 +89,38 @@ TEST(Exr, OfVeryManyChannelsIsRefused) {
   EXPECT_NE(inputErrorOf([&] { readExr(file); }).find("has 1103 channels"), std::string::npos);
 }
 
+/// Half floats are packed to fewer bytes than floats: 8192 x 4096 in 0.2 MB are whole.
+TEST(Exr, FlatPicturesOfHalfFloatsAreWhole) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / "flat.exr";
+  constexpr int kWidth = 4096, kHeight = 4096;
+  {
+    Imf::Header header(kWidth, kHeight, 1, {0, 0}, 1, Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+    for (const char* name : {"R", "G", "B"}) header.channels().insert(name, Imf::Channel(Imf::HALF));
+    Imf::OutputFile out(file.c_str(), header);
+    std::vector<uint16_t> row(kWidth, 0x3c00); // 1
+    Imf::FrameBuffer frame;
+    for (const char* name : {"R", "G", "B"})
+      frame.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(row.data()), sizeof(uint16_t), 0));
+    out.setFrameBuffer(frame);
+    out.writePixels(kHeight);
+  }
+  EXPECT_LT(fs::file_size(file), 150'000u);
+  EXPECT_EQ(readExr(file).at(77, 4000), vec3(1));
+}
+
+TEST(Exr, NamesSomeOfItsChannels) {
+  const TemporaryFolder folder;
+  {
+    Imf::Header header(4, 4);
+    for (int i = 0; i < 3000; ++i) header.channels().insert("c" + std::to_string(i), Imf::Channel(Imf::HALF));
+    Imf::OutputFile out((folder / "many.exr").c_str(), header);
+  }
+  const std::string error = inputErrorOf([&] { readExr(folder / "many.exr"); });
+  EXPECT_NE(error.find("and 2984 more)"), std::string::npos) << error;
+  EXPECT_LT(error.size(), 400u);
+}
+
 TEST(Png, RoundTripIsExact) {
   TemporaryFolder folder;
   Image8 image{3, 2, {0, 1, 2, 3, 4, 5, 250, 251, 252, 9, 9, 9, 8, 8, 8, 7, 0, 7}};

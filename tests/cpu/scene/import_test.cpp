@@ -250,14 +250,12 @@ TEST_F(Import, RoughnessAndMetalnessFromFactorsAndALinearTexture) {
   EXPECT_EQ(m[2].metalness, 1);
 }
 
-TEST_F(Import, BlendedMaterialsBecomeMaskedWithAWarning) {
+TEST_F(Import, TakesBlendedMaterials) {
   GltfBuilder b = oneTriangle();
   b.json["meshes"][0]["primitives"][0]["material"] = 0;
   b.json["materials"] = {{{"alphaMode", "BLEND"}, {"extensions", {{"KHR_materials_transmission", {{"x", 1}}}}}}};
   scene = b.load(folder);
-  EXPECT_EQ(scene.assets.materials[0].alphaMode, AlphaMode::Mask);
-  EXPECT_FLOAT_EQ(scene.assets.materials[0].alphaCutoff, 0.5f);
-  EXPECT_TRUE(hasWarning(scene, "alpha blending"));
+  EXPECT_EQ(scene.assets.materials[0].alphaMode, AlphaMode::Blend);
   EXPECT_TRUE(hasWarning(scene, "KHR_materials_transmission"));
 }
 

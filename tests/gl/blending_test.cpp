@@ -1,0 +1,164 @@
+// Alpha blending: of surfaces behind one another each takes its share, for the eye and for light.
+#include "engine/gpu_trace/gpu_rays.h"
+#include "frames.h"
+#include "gi/vpl/smc.h"
+#include "shaders/shared/coverage.h"
+#include "tests/support/images.h"
+#include "tests/support/reference.h"
+
+namespace lambent::test::blending_test {
+
+class BlendingTest : public GlTest {
+ protected:
+  static uint32_t blended(HandScene& scene, float alpha, const vec3& albedo = vec3(0)) {
+    const uint32_t index = scene.material(albedo);
+    scene.assets.materials[index].alphaMode = AlphaMode::Blend;
+    scene.assets.materials[index].alpha = alpha;
+    return index;
+  }
+  /// A wall that glows before black panes, of which all with one alpha are of one mesh; the camera sees nothing else.
+  static void panes(HandScene& scene, std::span<const float> alphas) {
+    scene.quad({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, scene.material(vec3(0), vec3(1)));
+    std::map<float, uint32_t> instances;
+    float z = 0.2f;
+    for (const float alpha : alphas) {
+      const auto same = instances.find(alpha);
+      if (same == instances.end())
+        instances[alpha] = scene.quad({-4, -4, 0.2f}, {8, 0, 0}, {0, 8, 0}, blended(scene, alpha));
+      else
+        scene.instance(scene.instances[same->second].mesh, glm::translate(mat4(1), vec3(0, 0, z - 0.2f)));
+      z += 0.2f;
+    }
+    scene.camera = cameraAt({0, 0, 3}, vec3(0), 1.0f, 96, 64);
+  }
+};
+
+TEST_F(BlendingTest, EachPaneTakesItsShareOfWhatIsLeft) {
+  const std::vector<std::vector<float>> rows{{0.25f}, {0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}, {0.1f, 0.7f},
+                                             {0.02f}, {1.0f},       {0.0f, 0.3f}};
+  for (const std::vector<float>& alphas : rows) {
+    HandScene scene;
+    panes(scene, alphas);
+    double left = 1;
+    for (const float alpha : alphas) left *= 1 - double(alpha);
+    Settings settings;
+    settings.image.exposure = 1;
+    Viewer viewer(settings);
+    const Image image = nextFrame(viewer, scene.view(), Buffer::Beauty), depth = viewer.read(Buffer::Depth);
+    std::vector<double> values;
+    for (const vec3& p : image.pixels) values.push_back(double(p.x));
+    const double mean = meanOf(values).mean;
+    EXPECT_NEAR(mean, left, 0.01) << alphas.size() << " panes, the first of " << alphas[0];
+    double scatter = 0;
+    for (const double v : values) scatter += (v - mean) * (v - mean) / double(values.size());
+    EXPECT_LT(std::sqrt(scatter), alphas.size() == 1 ? 0.04 : 0.1) << "the pattern shows";
+
+    // The reference has the same surface at each pixel, and mixes them alike.
+    EmbreeQuery rays(scene.assets);
+    const SceneView view = scene.view();
+    rays.update(view);
+    const LightSet lights = collectLights(view);
+    const ReferenceInputs in{.rays = rays, .lights = lights, .camera = view.camera, .bounces = 0, .blended = &view};
+    const Image truth = trace(in, 1, ReferenceBuffer::Beauty).mean;
+    EXPECT_NEAR(meanLuminance(truth), mean, 0.003);
+    std::vector<vec2> centres;
+    for (size_t i = 0; i < truth.pixels.size(); ++i) centres.push_back(pixelCentre(view.camera, i));
+    const std::vector<SurfaceHit> hits = surfacesAt(rays, view.camera, centres);
+    int differing = 0;
+    for (size_t i = 0; i < hits.size(); ++i)
+      differing += std::abs(view.camera.position().z - hits[i].position.z - depth.pixels[i].x) > 1e-3f;
+    EXPECT_LE(differing, int(hits.size() / 100)) << "but on the line where two triangles meet";
+  }
+}
+
+/// What is beside a pane, or before it, stays as sharp as it was.
+TEST_F(BlendingTest, MixesOnlyWherePanesAre) {
+  HandScene scene;
+  scene.quad({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, scene.material(vec3(0), vec3(1)));
+  scene.quad({-4, -4, 0.2f}, {4, 0, 0}, {0, 8, 0}, blended(scene, 0.5f));             // the left half
+  scene.quad({-4, -4, 0.4f}, {8, 0, 0}, {0, 4, 0}, scene.material(vec3(0), vec3(5))); // the lower one, before it
+  scene.camera = cameraAt({0, 0, 3}, vec3(0), 1.0f, 96, 64);
+  Settings settings;
+  settings.image.exposure = 1;
+  const Image image = firstFrame(settings, scene.view(), Buffer::Beauty);
+  for (const auto [x, y] : Pixels(image)) {
+    const float is = image.at(x, y).x;
+    if (y >= 33) {
+      EXPECT_NEAR(is, 5, 1e-3f) << x << ' ' << y;
+    } else if (y <= 30 && x >= 49) {
+      EXPECT_NEAR(is, 1, 1e-3f) << x << ' ' << y;
+    } else if (y <= 28 && x <= 45) {
+      EXPECT_NEAR(is, 0.5f, 0.2f) << x << ' ' << y;
+    }
+  }
+}
+
+TEST_F(BlendingTest, LightPassesPanesByTheirShare) {
+  const auto lit = [](std::optional<float> alpha, bool sun, bool reference) {
+    HandScene scene;
+    scene.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, scene.material(vec3(0.5f)));
+    if (alpha) scene.quad({-4, 1, -4}, {0, 0, 8}, {8, 0, 0}, blended(scene, *alpha));
+    if (sun)
+      scene.lights.push_back({.type = LightType::Directional, .direction = {0, -1, 0}, .intensity = vec3(3)});
+    else
+      scene.lamp({0, 2, 0}, vec3(10));
+    scene.camera = cameraAt({0, 0.9f, 2}, {0, 0, 0}, 0.9f, 96, 64); // below the pane
+    const SceneView view = scene.view();
+    if (!reference) {
+      Settings settings;
+      settings.image.exposure = 1;
+      return meanLuminance(firstFrame(settings, view, Buffer::Direct));
+    }
+    EmbreeQuery rays(scene.assets);
+    rays.update(view);
+    const LightSet lights = collectLights(view);
+    const ReferenceInputs in{
+        .rays = rays, .lights = lights, .camera = view.camera, .bounces = 0, .blended = alpha ? &view : nullptr};
+    return meanLuminance(trace(in, 64, ReferenceBuffer::Direct).mean);
+  };
+  for (const bool sun : {true, false})
+    for (const bool reference : {true, false})
+      for (const float alpha : {0.3f, 0.75f})
+        // Filtered maps make a shadow's edges steep, and what is between them.
+        EXPECT_NEAR(lit(alpha, sun, reference) / lit({}, sun, reference), 1 - alpha, reference ? 0.02 : 0.1)
+            << (sun ? "sun" : "lamp") << (reference ? ", reference" : ", direct light");
+}
+
+TEST_F(BlendingTest, RaysPassByChance) {
+  HandScene scene;
+  std::vector<u8vec4> texels;
+  for (int i = 0; i < 16; ++i) texels.push_back({255, 255, 255, uint8_t(17 * i)});
+  const uint32_t material = blended(scene, 0.8f);
+  scene.assets.materials[material].baseColorTexture = scene.texture(4, texels);
+  scene.assets.materials[material].baseColorTexture.nearest = true;
+  const uint32_t first = scene.quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, material);
+  scene.instance(scene.instances[first].mesh, glm::translate(mat4(1), vec3(0, -1, 0)));
+  EmbreeQuery embree(scene.assets);
+  embree.update(scene.view());
+  GpuRays gpu(programs, scene.assets);
+  gpu.update(scene.view());
+  double left = 0;
+  for (const u8vec4& t : texels) left += std::pow(1 - 0.8 * double(t.w) / 255, 2) / double(texels.size());
+  constexpr int kRays = 40000;
+  for (const bool own : {false, true}) { // by the rays' bits, and by keys
+    std::vector<Ray> rays;
+    for (uint32_t i = 0; i < kRays; ++i) {
+      Rng rng(5, Stream::Test, i);
+      const vec2 at = 2.0f * rng.next2() - 1.0f;
+      rays.push_back({{at.x, 1, at.y}, {0, -1, 0}, kInfinity, own ? rng.nextUint() >> 1 | 1 : 0});
+    }
+    const Answers byEmbree(embree, rays), byGpu(gpu, rays);
+    const double sigma = std::sqrt(left * (1 - left) / kRays);
+    EXPECT_NEAR(double(byEmbree.free()) / kRays, left, 4 * sigma) << own;
+    EXPECT_NEAR(double(byGpu.free()) / kRays, left, 4 * sigma) << own;
+    int differing = 0;
+    for (size_t i = 0; i < rays.size(); ++i)
+      differing += byEmbree.hits[i].valid() != byGpu.hits[i].valid() || byEmbree.blocked[i] != byGpu.blocked[i];
+    EXPECT_LE(differing, 20) << "beside edges of texels";
+    int otherwise = 0; // a ray and the segment along it meet the same
+    for (size_t i = 0; i < rays.size(); ++i) otherwise += byEmbree.hits[i].valid() != bool(byEmbree.blocked[i]);
+    EXPECT_EQ(otherwise, 0);
+  }
+}
+
+} // namespace lambent::test::blending_test
