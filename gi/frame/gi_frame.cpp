@@ -5,6 +5,7 @@
 #include "engine/core/memory.h"
 #include "engine/core/open_watch.h"
 #include "engine/gl/context.h"
+#include "engine/gl/counts.h"
 #include "engine/gl/state_guard.h"
 #include "gi/contract/frame_outputs.h"
 #include "gi/direct/direct_light.h"
@@ -150,7 +151,7 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   k.outputs.inside = indirect.inside();
   k.end(begin, before);
   if (OpenWatch::any()) {
-    glFinish(); // drivers that draw on the CPU draw later
+    gl::finishToMeasure(); // drivers that draw on the CPU draw later
     OpenWatch::end();
   }
   return stats;
