@@ -43,7 +43,6 @@ void GpuScene::place(std::span<const InstanceView> instances) {
   items_.clear();
   bounds_ = {};
   triangleCount_ = 0;
-  blends_ = false;
   for (uint32_t i = 0; i < instances.size(); ++i) {
     const InstanceView& instance = instances[i];
     const mat4 transposed = glm::transpose(instance.worldFromObject);
@@ -58,7 +57,6 @@ void GpuScene::place(std::span<const InstanceView> instances) {
                         instance.deformed != nullptr, mirrored});
       bounds_.add(items_.back().boundsWorld);
       triangleCount_ += range.indexCount / 3;
-      blends_ |= materialDraws_[range.material].alphaMode == AlphaMode::Blend;
     }
   }
   // Sorted once here, not per draw: by material, since binding one costs more than anything else of a draw.

@@ -65,8 +65,8 @@ class GpuScene {
   /// process has.
   uint64_t stillVersion() const { return stillVersion_; }
 
-  /// Says whether an instance has a blended material.
-  bool blends() const { return blends_; }
+  /// Says whether there are blended materials.
+  bool blends() const { return blends_ && alphaTest_ != AlphaTest::None; }
   uint64_t testedDraws() const { return testedDraws_; }     // so far, of materials whose alpha is tested
   uint32_t triangleCount() const { return triangleCount_; } // of all placed instances
   const Aabb& bounds() const { return bounds_; }            // world space

@@ -231,7 +231,9 @@ GpuScene::GpuScene(const PassContext& context, const SceneAssets& assets)
 
 void GpuScene::takeAssets(const SceneAssets& assets) {
   materialDraws_.clear();
+  const bool blended = blends_;
   uploadMaterials(assets);
+  if (blends_ != blended) placed_.clear(); // instances then need indices
   if (std::exchange(meshRevision_, assets.meshRevision) == assets.meshRevision) return;
   meshes_.clear();
   deformed_ = {};
@@ -354,6 +356,7 @@ void GpuScene::uploadMaterials(const SceneAssets& assets) {
          textureOf(m.normalTexture), samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture),
          samplerOf(m.roughnessMetalnessTexture), samplerOf(m.normalTexture), m.alphaMode, m.backHidden});
   }
+  blends_ = std::ranges::any_of(assets.materials, &Material::blends);
   materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);
 }
 

@@ -43,7 +43,7 @@ class EffectsTest : public GlTest {
     }
     /// A quad in the light's way whose texture is a chequer: green and half of it cut out, or green and blue.
     void textured(AlphaMode alpha) {
-      const u8vec4 green(20, 200, 20, 255), other = alpha == AlphaMode::Mask ? u8vec4(0) : u8vec4(20, 20, 220, 255);
+      const u8vec4 green(20, 200, 20, 255), other = alpha == AlphaMode::Opaque ? u8vec4(20, 20, 220, 255) : u8vec4(0);
       const uint32_t m = scene.material(vec3(1));
       scene.assets.materials[m].alphaMode = alpha;
       scene.assets.materials[m].baseColorTexture = scene.texture(2, {green, other, other, green});
@@ -197,7 +197,8 @@ TEST_F(EffectsTest, SkyNeedsRadiance) {
 TEST_F(EffectsTest, AlphaNeedsAMask) {
   withoutIt(Alpha, quick(), asItIs());
   withoutIt(Alpha, quick(), stillWorld([](World& w) { w.textured(AlphaMode::Opaque); }));
-  EXPECT_GT(lossWithout(Alpha, quick(), stillWorld([](World& w) { w.textured(AlphaMode::Mask); })), 0.02);
+  for (const AlphaMode mode : {AlphaMode::Mask, AlphaMode::Blend})
+    EXPECT_GT(lossWithout(Alpha, quick(), stillWorld([&](World& w) { w.textured(mode); })), 0.02);
 }
 
 TEST_F(EffectsTest, TexturesNeedATexture) {
