@@ -17,6 +17,7 @@ layout(std140, binding = 1) uniform Lights { LightRecord lights[kLightsPerBlock]
 uniform float spread; // GLOSSY, EMITTER_MAPS: GatherSettings::spread
 #ifdef LIT
 layout(location = 0) flat in int litLight;
+layout(location = 1) flat in float litShare;
 #else
 uniform int lightCount;
 uniform int firstLight; // DOUBTS: of the block, among the frame's direct lights
@@ -147,7 +148,9 @@ void main() {
       if (answer == kInDoubt) noteDoubt(pixel, place, normal, uint(firstLight + i));
       if (answer != kLit) continue;
     }
-#elif !defined(LIT)
+#elif defined(LIT)
+    seen = litShare;
+#else
     seen = shadowOf(light, position, normal, cosine);
 #endif
     irradiance += light.intensityLayer.rgb * (weight * seen);

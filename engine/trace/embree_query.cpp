@@ -32,6 +32,21 @@ struct GeometryData {
 /// Of this thread, since they were last added up.
 thread_local uint64_t alphaTests = 0;
 
+#if EMBREE_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+void beginContext(EmbreeContext& c) { rtcInitRayQueryContext(&c); }
+#else
+using EmbreeContext = RTCIntersectContext;
+void beginContext(EmbreeContext& c) { rtcInitIntersectContext(&c); }
+#endif
+
+/// Of every query; filters know it by its first member.
+struct QueryContext {
+  EmbreeContext embree;
+  float* through = nullptr; // of one ray: multiplied by what blended surfaces let through, which then stop nothing
+  QueryContext() { beginContext(embree); }
+};
+
 /// Lets rays through where an alpha-masked material is cut out, or a blended one not there for them.
 void alphaFilter(const RTCFilterFunctionNArguments* args) {
   const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
@@ -45,6 +60,12 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
     const vec2 barycentric(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
     const TrianglePlace place = trianglePlace(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric);
     const float alpha = alphaAt(*data.assets, mesh, material, place);
+    if (float* through = reinterpret_cast<const QueryContext*>(args->context)->through;
+        through && material.alphaMode == AlphaMode::Blend) {
+      *through *= 1 - std::clamp(alpha, 0.0f, 1.0f);
+      args->valid[i] = 0;
+      continue;
+    }
     const bool there = material.alphaMode == AlphaMode::Mask
                            ? alpha >= material.alphaCutoff
                            : isCovered(alpha, RTCRayN_id(args->ray, args->N, i),
@@ -70,12 +91,15 @@ void backFilter(const RTCFilterFunctionNArguments* args) {
 #if EMBREE_MAJOR >= 4
 constexpr RTCSceneFlags kFilteredByRay = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 struct TraceArguments {
+  QueryContext context;
   RTCIntersectArguments intersect;
   RTCOccludedArguments occluded;
   TraceArguments() {
     rtcInitIntersectArguments(&intersect);
     rtcInitOccludedArguments(&occluded);
+    intersect.context = occluded.context = &context.embree;
   }
+  TraceArguments(const TraceArguments&) = delete;
   void hideBacks() {
     intersect.filter = backFilter;
     intersect.flags = RTCRayQueryFlags(intersect.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
@@ -90,21 +114,18 @@ void intersect16(const int* valid, RTCScene s, TraceArguments& a, RTCRayHit16* r
 #else
 constexpr RTCSceneFlags kFilteredByRay = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 struct TraceArguments {
-  RTCIntersectContext context;
-  TraceArguments() { rtcInitIntersectContext(&context); }
-  void hideBacks() { context.filter = backFilter; }
+  QueryContext context;
+  void hideBacks() { context.embree.filter = backFilter; }
 };
-void intersect1(RTCScene s, TraceArguments& a, RTCRayHit* r) { rtcIntersect1(s, &a.context, r); }
-void occluded1(RTCScene s, TraceArguments& a, RTCRay* r) { rtcOccluded1(s, &a.context, r); }
+void intersect1(RTCScene s, TraceArguments& a, RTCRayHit* r) { rtcIntersect1(s, &a.context.embree, r); }
+void occluded1(RTCScene s, TraceArguments& a, RTCRay* r) { rtcOccluded1(s, &a.context.embree, r); }
 void intersect16(const int* valid, RTCScene s, TraceArguments& a, RTCRayHit16* r) {
-  a.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid, s, &a.context, r);
+  a.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid, s, &a.context.embree, r);
 }
 #endif
 
-uint32_t keyOf(const Ray& r, bool blends) {
-  return r.key != 0 || !blends ? r.key : rayKey(r.origin, r.direction);
-}
+uint32_t keyOf(const Ray& r, bool blends) { return r.key != 0 || !blends ? r.key : rayKey(r.origin, r.direction); }
 
 void fillRay(RTCRay& out, const Ray& r, bool blends) {
   out.org_x = r.origin.x;
@@ -471,6 +492,22 @@ void EmbreeQuery::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked
     fillRay(ray, rays[i], state_->blends);
     occluded1(state_->top, arguments, &ray);
     blocked[i] = ray.tfar < 0;
+  }
+  state_->countAlphaTests();
+}
+
+void EmbreeQuery::shares(std::span<const Ray> rays, std::span<float> open) const {
+  if (!state_->blends) return RayQuery::shares(rays, open);
+  CHECK_EQ(rays.size(), open.size());
+  TraceArguments arguments;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    open[i] = 1;
+    if (!state_->traces(rays[i])) continue;
+    arguments.context.through = &open[i];
+    RTCRay ray;
+    fillRay(ray, rays[i], false);
+    occluded1(state_->top, arguments, &ray);
+    if (ray.tfar < 0) open[i] = 0;
   }
   state_->countAlphaTests();
 }

@@ -7,6 +7,7 @@
 #include "engine/view/scene_view.h"
 
 #include <span>
+#include <vector>
 
 namespace lambent {
 
@@ -60,6 +61,14 @@ class RayQuery {
   virtual void distances(std::span<const Ray> rays, std::span<float> t) const = 0;
   /// Sets `blocked` to 1 where something lies on the segment (0, tMax), else to 0.
   virtual void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const = 0;
+
+  /// Finds what part of the light along each segment passes: 0 where something solid lies on it, else the product of
+  /// what blended surfaces let through; or, by chance, 0 or 1.
+  virtual void shares(std::span<const Ray> rays, std::span<float> open) const {
+    std::vector<uint8_t> blocked(rays.size());
+    occluded(rays, blocked);
+    for (size_t i = 0; i < rays.size(); ++i) open[i] = blocked[i] ? 0.0f : 1.0f;
+  }
 
   /// Says whether only the thread that made the query may use it; such a query answers long lists best.
   virtual bool ownThread() const { return false; }

@@ -259,7 +259,7 @@ void DirectLight::drawLit(const GBuffer& surfaces, std::span<const LightBlock> b
   for (const LightBlock& block : blocks) {
     const size_t first = pair;
     const uint32_t end = block.first + uint32_t(block.held.size());
-    while (pair < doubts_.lit().size() && doubts_.lit()[pair].y < end) ++pair;
+    while (pair < doubts_.lit().size() && ShadowRayPass::lightOf(doubts_.lit()[pair]) < end) ++pair;
     if (pair == first) continue;
     const gl::Program& program = programFor(surfaces, block, "direct_lit.vert", "LIT");
     program.set("firstLight", int(block.first));

@@ -138,6 +138,7 @@ int affordableResolution(int wanted, size_t maps) {
 /// A block with its maps.
 struct KeptBlock {
   MapKind kind = MapKind::Sun;
+  DrawKind depth = DrawKind::Depth; // what its maps are drawn with
   gl::Texture maps;
   LightRecords lights;
   std::vector<mat4> drawn; // clipFromWorld of each layer's map (a cube's first face); zero: not drawn
@@ -175,7 +176,8 @@ struct LightShadowState {
   void fill(size_t& block, MapKind kind, int resolution, const std::vector<LitMap>& maps, const LightShadowInputs& in);
   void drawMaps(KeptBlock& block, const std::vector<LitMap>& maps, size_t first, const LightShadowInputs& in);
   void drawMoved(KeptBlock& block, int layer, const mat4& clipFromWorld, const GpuScene& scene);
-  void drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene, Instances which);
+  void drawInto(const gl::Texture& maps, int layer, DrawKind kind, const mat4& clipFromWorld, const GpuScene& scene,
+                Instances which);
 };
 
 /// Puts `maps` into blocks from number `block` on; the block's texture is kept when its shape is right.
@@ -200,6 +202,7 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, const s
       target.still = {};
     }
     target.kind = kind;
+    target.depth = in.shadow.rays && kind != MapKind::Sky ? DrawKind::DoubtedDepth : DrawKind::Depth;
     std::vector<LightRecord> lights;
     for (int i = 0; i < count; ++i) {
       lights.push_back(maps[first + i].light);
@@ -222,7 +225,7 @@ void LightShadowState::drawMaps(KeptBlock& block, const std::vector<LitMap>& map
       const Frustum frustum = Frustum::ofClip(map.clipFromWorld[face]);
       const auto shows = [&](const Aabb& box) { return frustum.mayShow(box); };
       if (whole)
-        drawInto(block.maps, layer * faces + face, map.clipFromWorld[face], in.scene, Instances::All);
+        drawInto(block.maps, layer * faces + face, block.depth, map.clipFromWorld[face], in.scene, Instances::All);
       else if (std::any_of(in.moved.begin(), in.moved.end(), shows))
         drawMoved(block, layer * faces + face, map.clipFromWorld[face], in.scene);
       else
@@ -242,24 +245,24 @@ void LightShadowState::drawMoved(KeptBlock& block, int layer, const mat4& clipFr
   }
   const KeptBlock::StillMap wanted{clipFromWorld, scene.stillVersion()};
   if (KeptBlock::StillMap& has = block.stillDrawn[size_t(layer)]; !(has == wanted)) {
-    drawInto(block.still, layer, clipFromWorld, scene, Instances::Still);
+    drawInto(block.still, layer, block.depth, clipFromWorld, scene, Instances::Still);
     has = wanted;
   }
   const GLenum target = block.kind == MapKind::Cube ? GL_TEXTURE_CUBE_MAP_ARRAY : GL_TEXTURE_2D_ARRAY;
   glCopyImageSubData(block.still.name(), target, 0, 0, 0, layer, block.maps.name(), target, 0, 0, 0, layer, size, size,
                      1);
-  drawInto(block.maps, layer, clipFromWorld, scene, Instances::Moving);
+  drawInto(block.maps, layer, block.depth, clipFromWorld, scene, Instances::Moving);
 }
 
 /// Draws a map; where only moving objects are drawn, over what the map shows already.
-void LightShadowState::drawInto(const gl::Texture& maps, int layer, const mat4& clipFromWorld, const GpuScene& scene,
-                                Instances which) {
+void LightShadowState::drawInto(const gl::Texture& maps, int layer, DrawKind kind, const mat4& clipFromWorld,
+                                const GpuScene& scene, Instances which) {
   framebuffer.bind();
   gl::PipelineState{.depthTest = true, .depthWrite = true, .width = maps.width(), .height = maps.width()}.apply();
   framebuffer.attachDepthLayer(maps, layer);
   const float nothing = 0;
   if (which != Instances::Moving) glClearNamedFramebufferfv(framebuffer.name(), GL_DEPTH, 0, &nothing);
-  scene.draw(DrawKind::Depth, clipFromWorld, vec3(0), which);
+  scene.draw(kind, clipFromWorld, vec3(0), which);
 }
 
 LightShadowPass::LightShadowPass(PassContext context) : state_(std::make_unique<LightShadowState>(context)) {}

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace lambent {
 
@@ -36,16 +37,17 @@ void ShadowRayPass::trace(const RayQuery& rays, const std::function<Ray(const Sh
     return a.light != b.light ? a.light < b.light : a.pixel < b.pixel;
   });
   std::vector<Ray> segments(doubts_.size());
-  std::vector<uint8_t> blocked(doubts_.size());
+  std::vector<float> open(doubts_.size());
   parallelFor(doubts_.size(), 512, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) segments[i] = towards(doubts_[i]);
     const size_t n = end - begin;
-    rays.occluded(std::span(segments).subspan(begin, n), std::span(blocked).subspan(begin, n));
+    rays.shares(std::span(segments).subspan(begin, n), std::span(open).subspan(begin, n));
   });
   counts.occlusion += doubts_.size();
   lit_.clear();
   for (size_t i = 0; i < doubts_.size(); ++i)
-    if (!blocked[i]) lit_.push_back({doubts_[i].pixel, doubts_[i].light});
+    if (const auto share = uint32_t(std::lround(255 * open[i])); share > 0)
+      lit_.push_back({doubts_[i].pixel, doubts_[i].light | share << 24});
 }
 
 void ShadowRayPass::bindLit(int unit) {

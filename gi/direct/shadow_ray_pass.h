@@ -24,8 +24,10 @@ class ShadowRayPass {
   /// light and pixel.
   void trace(const RayQuery& rays, const std::function<Ray(const ShadowDoubt&)>& towards, RayCounts& counts);
 
-  /// Pairs of a pixel (as ShadowDoubt's) and a light that see one another.
+  /// Pairs of a pixel (as ShadowDoubt's) and a light that see one another: its index in the lower 24 bits, and in the
+  /// upper 8 what part of its light passes blended surfaces.
   std::span<const uvec2> lit() const { return lit_; }
+  static uint32_t lightOf(const uvec2& pair) { return pair.y & 0xffffffu; }
   void bindLit(int unit);
 
  private:

@@ -293,7 +293,7 @@ ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& i
     glm::dvec3 total{0}, variance{0};
   };
   std::vector<Row> rows(size_t(sums.height));
-  const bool mixes = in.blended && !irradiance;
+  const bool mixes = in.blended && buffer == ReferenceBuffer::Beauty;
   std::vector<uint8_t> blended(mixes ? sums.pixels.size() : 0);
   parallelFor(rows.size(), 1, [&](size_t firstRow, size_t lastRow) {
     if (mixes)

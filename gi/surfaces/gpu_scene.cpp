@@ -108,20 +108,22 @@ namespace {
 
 /// Whether it shows materials, and not only where their masks are cut out.
 bool showsMaterials(DrawKind kind) { return kind <= DrawKind::GlossyMappedGBuffer; }
+bool isDepth(DrawKind kind) { return kind == DrawKind::Depth || kind == DrawKind::DoubtedDepth; }
 bool showsFinish(DrawKind kind) { return kind == DrawKind::GlossyGBuffer || kind == DrawKind::GlossyMappedGBuffer; }
 bool showsNormalMaps(DrawKind kind) { return kind == DrawKind::MappedGBuffer || kind == DrawKind::GlossyMappedGBuffer; }
 
 } // namespace
 
 const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& material) const {
-  gl::ProgramDesc desc{"scene.vert", kind == DrawKind::Depth            ? "depth.frag"
+  gl::ProgramDesc desc{"scene.vert", isDepth(kind)                      ? "depth.frag"
                                      : kind == DrawKind::DistanceNormal ? "distance_normal.frag"
                                      : kind == DrawKind::Blended        ? "blended.frag"
                                                                         : "gbuffer.frag"};
   const bool shows = showsMaterials(kind);
   if (!shows) desc.defines.push_back("DEPTH_ONLY");
   if (kind == DrawKind::DistanceNormal) desc.defines.push_back("POSITION");
-  if (material.alphaMode == AlphaMode::Blend && tested(material)) desc.defines.push_back("ALPHA_BLEND");
+  if (material.alphaMode == AlphaMode::Blend && tested(material))
+    desc.defines.push_back(kind == DrawKind::DoubtedDepth ? "EVERY_OTHER" : "ALPHA_BLEND");
   if (tested(material))
     desc.defines.push_back("ALPHA_MASK");
   else if (shows && context_.drawnByCpu)

@@ -26,8 +26,18 @@ struct Frustum {
 };
 
 /// What a draw writes: the G-buffer, the same with roughness and metalness, with mapped normals, or both; distance
-/// (metres) and geometric normal of what the eye sees; depth alone; or where blended materials are, and nothing else.
-enum class DrawKind { GBuffer, GlossyGBuffer, MappedGBuffer, GlossyMappedGBuffer, DistanceNormal, Depth, Blended };
+/// (metres) and geometric normal of what the eye sees; depth alone; depth for maps that ask rays where their texels
+/// differ, with blended surfaces in every other texel; or where blended materials are, and nothing else.
+enum class DrawKind {
+  GBuffer,
+  GlossyGBuffer,
+  MappedGBuffer,
+  GlossyMappedGBuffer,
+  DistanceNormal,
+  Depth,
+  DoubtedDepth,
+  Blended
+};
 inline DrawKind gBufferWith(bool glossy, bool mapped) { return DrawKind(int(glossy) + 2 * int(mapped)); }
 
 /// Which instances are drawn: those that have not moved for a while, those that have, or both.

@@ -33,7 +33,7 @@ const gl::Texture& CompositePass::run(const CompositeInputs& in) {
   framebuffer_.bind();
   gl::PipelineState{.width = width, .height = height}.apply();
   gl::drawFullscreen();
-  return in.surfaces.blended ? mixBlended(*in.surfaces.blended) : radiance_;
+  return in.mixes && in.surfaces.blended ? mixBlended(*in.surfaces.blended) : radiance_;
 }
 
 const gl::Texture& CompositePass::mixBlended(const gl::Texture& blended) {

@@ -82,7 +82,11 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
   results = {gi_.outputs(), last};
   const bool drawn = stats.plan.on(EffectId::Redraw);
   if (drawn)
-    results.radiance = &passes_->composite.run({results.surfaces, results.direct, results.indirect, results.sky});
+    results.radiance = &passes_->composite.run({.surfaces = results.surfaces,
+                                                .direct = results.direct,
+                                                .indirect = results.indirect,
+                                                .sky = results.sky,
+                                                .mixes = true});
   expose(drawn, std::exchange(elapsed_, 0.0f));
   for (const StageTime& row : passes_->context.profiler.takeRows()) stats.stages.push_back(row);
   const gl::Counts asked = gl::counts() - before;

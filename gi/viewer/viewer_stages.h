@@ -29,6 +29,7 @@ struct CompositeInputs {
   SurfaceLighting direct, indirect;
   Sky sky;
   bool emission = true; // of surfaces
+  bool mixes = false;   // pixels where blended surfaces are
 };
 
 class CompositePass {

@@ -27,14 +27,19 @@ vec4 baseColorAt(vec4 uv01, vec4 vertexColor) {
 }
 
 #ifdef ALPHA_MASK
-#ifdef ALPHA_BLEND
+#if defined(ALPHA_BLEND) || defined(EVERY_OTHER)
 #include "shared/coverage.h"
+#endif
+#ifdef ALPHA_BLEND
 layout(location = 6) flat in uint instance;
 #endif
 /// Whether the surface is not there for this pixel.
 bool isCutOut(float alpha) {
 #ifdef ALPHA_BLEND
   return !isCovered(alpha, pixelKey(uint(gl_FragCoord.x), uint(gl_FragCoord.y)), instance, uint(gl_PrimitiveID));
+#elif defined(EVERY_OTHER)
+  bool other = (int(gl_FragCoord.x) + int(gl_FragCoord.y)) % 2 == 0;
+  return alpha <= kLeastBlended || (alpha < 1.0 - kLeastBlended && other);
 #else
   return alpha < material.emission.a;
 #endif

@@ -20,14 +20,14 @@ class BlendingTest : public GlTest {
   static void panes(HandScene& scene, std::span<const float> alphas) {
     scene.quad({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, scene.material(vec3(0), vec3(1)));
     std::map<float, uint32_t> instances;
-    float z = 0.2f;
+    float z = 0.05f;
     for (const float alpha : alphas) {
       const auto same = instances.find(alpha);
       if (same == instances.end())
-        instances[alpha] = scene.quad({-4, -4, 0.2f}, {8, 0, 0}, {0, 8, 0}, blended(scene, alpha));
+        instances[alpha] = scene.quad({-4, -4, z}, {8, 0, 0}, {0, 8, 0}, blended(scene, alpha));
       else
-        scene.instance(scene.instances[same->second].mesh, glm::translate(mat4(1), vec3(0, 0, z - 0.2f)));
-      z += 0.2f;
+        scene.instance(scene.instances[same->second].mesh, glm::translate(mat4(1), vec3(0, 0, z - 0.05f)));
+      z += 0.05f;
     }
     scene.camera = cameraAt({0, 0, 3}, vec3(0), 1.0f, 96, 64);
   }
@@ -35,7 +35,7 @@ class BlendingTest : public GlTest {
 
 TEST_F(BlendingTest, EachPaneTakesItsShareOfWhatIsLeft) {
   const std::vector<std::vector<float>> rows{{0.25f}, {0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}, {0.1f, 0.7f},
-                                             {0.02f}, {1.0f},       {0.0f, 0.3f}};
+                                             {0.02f}, {1.0f},       {0.0f, 0.3f},       std::vector<float>(40, 0.02f)};
   for (const std::vector<float>& alphas : rows) {
     HandScene scene;
     panes(scene, alphas);
@@ -54,7 +54,7 @@ TEST_F(BlendingTest, EachPaneTakesItsShareOfWhatIsLeft) {
       for (const vec3& p : of.pixels) sum += std::pow(double(p.x) - mean, 2) / double(of.pixels.size());
       return std::sqrt(sum);
     };
-    const double most = alphas.size() == 1 ? 0.04 : 0.1;
+    const double most = alphas.size() == 1 ? 0.055 : 0.12; // white noise: 0.12 of one
     EXPECT_LT(scatter(image), most) << "the pattern shows";
 
     // The reference has the same surface at each pixel, and mixes them alike.
@@ -96,7 +96,7 @@ TEST_F(BlendingTest, MixesOnlyWherePanesAre) {
     } else if (y <= 30 && x >= 49) {
       EXPECT_NEAR(is, 1, 1e-3f) << x << ' ' << y;
     } else if (y <= 28 && x <= 45) {
-      EXPECT_NEAR(is, 0.5f, 0.2f) << x << ' ' << y;
+      EXPECT_NEAR(is, 0.5f, 0.25f) << x << ' ' << y;
     }
   }
 }
@@ -130,12 +130,11 @@ TEST_F(BlendingTest, LightPassesPanesByTheirShare) {
       for (const float alpha : {0.3f, 0.75f}) {
         const Image shaded = lit(alpha, sun, reference);
         const std::string what = std::string(sun ? "sun" : "lamp") + (reference ? ", reference" : ", direct light");
-        // Filtered maps make a shadow's edges steep, and what is between them.
-        EXPECT_NEAR(meanLuminance(shaded) / meanLuminance(open), 1 - alpha, reference ? 0.02 : 0.1) << what;
-        if (!reference) continue;
-        int off = 0; // each sample has a chance of its own
+        EXPECT_NEAR(meanLuminance(shaded) / meanLuminance(open), 1 - alpha, 0.02) << what;
+        int off = 0; // each sample has a chance of its own, and direct light all of what passes
+        const float most = reference ? 0.3f : 0.01f;
         for (size_t i = 0; i < open.pixels.size(); ++i)
-          off += std::abs(shaded.pixels[i].x - (1 - alpha) * open.pixels[i].x) > 0.3f * open.pixels[i].x;
+          off += std::abs(shaded.pixels[i].x - (1 - alpha) * open.pixels[i].x) > most * open.pixels[i].x;
         EXPECT_LE(off, int(open.pixels.size() / 100)) << what;
       }
     }
@@ -172,6 +171,19 @@ TEST_F(BlendingTest, RaysPassByChance) {
     for (size_t i = 0; i < rays.size(); ++i)
       differing += byEmbree.hits[i].valid() != byGpu.hits[i].valid() || byEmbree.blocked[i] != byGpu.blocked[i];
     EXPECT_LE(differing, 20) << "beside edges of texels";
+    std::vector<float> open(rays.size());
+    embree.shares(rays, open);
+    double passes = 0; // exactly, of each
+    for (const float share : open) passes += double(share) / double(rays.size());
+    EXPECT_NEAR(passes, left, 0.005);
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const vec3& at = rays[i].origin;
+      const int column = std::clamp(int((at.z + 1) * 2), 0, 3), row = std::clamp(int((at.x + 1) * 2), 0, 3);
+      const float alpha = 0.8f * float(texels[size_t(4 * row + column)].w) / 255;
+      if (std::abs(glm::fract(2 * at.x) - 0.5f) < 0.49f && std::abs(glm::fract(2 * at.z) - 0.5f) < 0.49f) {
+        EXPECT_NEAR(open[i], (1 - alpha) * (1 - alpha), 1e-4f) << i;
+      }
+    }
     int otherwise = 0; // a ray and the segment along it meet the same
     for (size_t i = 0; i < rays.size(); ++i) otherwise += byEmbree.hits[i].valid() != bool(byEmbree.blocked[i]);
     EXPECT_EQ(otherwise, 0);

@@ -54,9 +54,14 @@ void eachTextPixel(std::string text, int unit, const std::function<void(int, int
 
 } // namespace
 
-Image readLinear(const std::string& file) {
+Image readLinear(const std::string& file, const std::string& layer) {
   const std::string extension = fs::path(file).extension().string();
-  if (extension == ".exr") return readExr(file);
+  if (extension == ".exr" || !layer.empty()) {
+    constexpr uint64_t kMostSmall = 4096 * 4096; // texels; larger pictures have a byte for each at least
+    std::error_code unknown;
+    const uintmax_t size = fs::file_size(file, unknown);
+    return readExr(file, layer, std::max<uint64_t>(kMostSmall, unknown ? 0 : size));
+  }
   if (extension == ".pfm") return readPfm(file);
   throw InputError(file, "not a linear picture (.exr or .pfm)");
 }

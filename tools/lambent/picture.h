@@ -11,7 +11,7 @@
 namespace lambent {
 
 /// .exr or .pfm; throws InputError for other names.
-Image readLinear(const std::string& file);
+Image readLinear(const std::string& file, const std::string& layer = {});
 
 /// Checks before long work that `file` has an extension that can be written, and a folder that takes it.
 void checkPictureName(const std::string& file);

@@ -146,7 +146,7 @@ void checkSize(const std::string& file, const Image& image, const std::string& l
 void compare(const CompareOptions& options) {
   if (!options.difference.empty()) checkPictureName(options.difference);
   const Image x = readLinear(options.a);
-  const Image y = options.layer.empty() ? readLinear(options.b) : readExr(options.b, options.layer);
+  const Image y = readLinear(options.b, options.layer);
   checkSize(options.b, y, options.a, x);
   Image mask;
   if (!options.mask.empty()) {

@@ -177,8 +177,10 @@ void refuseHeavyShot(const Shot& shot, const std::string& file) {
 /// What the person asks for beyond a picture of the default size and settings; what a shot asks for is the file's.
 double timesAsked(const LaunchOptions& options, const CameraView& camera) {
   const auto [width, height] = sizeOf(kDefaultSize);
+  constexpr double kStored = 5; // times a usual first frame: it casts a cube
+  const Settings asked = chosenSettings(options, {});
   const double pixels = double(camera.width) * double(camera.height) / (double(width) * double(height));
-  return std::max(1.0, pixels) * std::max(1.0, workOf(chosenSettings(options, {})).times);
+  return std::max(1.0, pixels) * std::max(1.0, workOf(asked).times) * (needsOf(asked).stored ? kStored : 1);
 }
 
 } // namespace
