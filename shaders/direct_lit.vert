@@ -1,6 +1,7 @@
 #version 450
 // A pixel and a direct light that rays found to see one another, as a point.
-layout(binding = 3) uniform usamplerBuffer litPairs; // r: pixel, as ShadowDoubt's; g: light, and in the upper 8 bits its share that passes
+// r: pixel, as ShadowDoubt's; g: light, and in the upper 8 bits what part of its light passes blended surfaces.
+layout(binding = 3) uniform usamplerBuffer litPairs;
 uniform int firstPair;
 uniform int firstLight; // of the block
 uniform vec2 frameSize;

@@ -1,7 +1,6 @@
 #version 450
 // Triangles of an instance, for every pass that draws the scene. DEPTH_ONLY leaves out what depth does not need;
-// POSITION puts back where it is, ALPHA_BLEND tells
-// whose triangles they are.
+// POSITION puts back where it is, ALPHA_BLEND tells whose triangles they are.
 layout(location = 0) in vec3 positionObject;
 layout(location = 4) in vec4 worldRow0; // rows of worldFromObject, one per instance
 layout(location = 5) in vec4 worldRow1;

@@ -19,21 +19,19 @@ namespace {
 
 constexpr size_t kBlockPixels = 16; // small images still keep all threads busy
 
-/// Surfaces at the centres of pixels [begin, end).
-std::vector<SurfaceHit> primaryHits(const ReferenceInputs& in, size_t begin, size_t end) {
+/// Surfaces at the centres of pixels [begin, end); `key` as surfacesAt.
+std::vector<SurfaceHit> primaryHits(const ReferenceInputs& in, size_t begin, size_t end,
+                                    std::optional<uint32_t> key = {}) {
   const CameraView& camera = in.camera;
   std::vector<vec2> centres;
   for (size_t i = begin; i < end; ++i) centres.push_back(pixelCentre(camera, i));
-  return surfacesAt(in.rays, camera, centres, in.normalMaps);
+  return surfacesAt(in.rays, camera, centres, in.normalMaps, key);
 }
 
 /// Which of the pixels [begin, end) blended surfaces lie in: those that blend.frag mixes.
 std::vector<uint8_t> blendedAt(const ReferenceInputs& in, size_t begin, size_t end) {
-  std::vector<vec2> centres;
-  for (size_t i = begin; i < end; ++i) centres.push_back(pixelCentre(in.camera, i));
-  const std::vector<SurfaceHit> first = surfacesAt(in.rays, in.camera, centres, nullptr, kMeetsAll);
   std::vector<uint8_t> out;
-  for (const SurfaceHit& h : first) {
+  for (const SurfaceHit& h : primaryHits(in, begin, end, kMeetsAll)) {
     out.push_back(0);
     if (!h.valid()) continue;
     const SceneAssets& assets = *in.blended->assets;

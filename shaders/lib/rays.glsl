@@ -132,7 +132,7 @@ RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any, uint key) {
       }
       ++at;
       uint first = instance.firstTriangle + (node.leaf >> 3);
-      for (uint k = 0u; k < (node.leaf & 7u); ++k) 
+      for (uint k = 0u; k < (node.leaf & 7u); ++k)
         meetTriangle(first + k, o, shear, axis, key, instance.instance, hit, met);
       done = any && met;
     }

@@ -30,8 +30,8 @@ struct RayInstance {
   uint instance;           // into SceneView::instances
 };
 
-/// A triangle whose material is cut out where alpha lies below the cutoff, or blended (coverage.h). Its image's alpha is a byte per texel, four
-/// to a word, in rows from v = 0 on.
+/// A triangle whose material is cut out where alpha lies below the cutoff, or blended (coverage.h). Its image's alpha is
+/// a byte per texel, four to a word, in rows from v = 0 on.
 struct RayMask {
   vec4 corners[3]; // xy: coordinates in the image, [0,1] being all of it; z: alpha that the texel's is multiplied by;
                    // w of the first: the cutoff,
