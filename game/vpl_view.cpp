@@ -80,7 +80,7 @@ void drawPaths(const KeptPaths& kept, const Vpl& vpl, const WorldPen& pen, float
     for (int depth = 0; depth < kept.lengths[size_t(path)]; ++depth) {
       const KeptVertex& v = kept.vertices[size_t(depth) * size_t(kept.paths) + size_t(path)];
       if (depth > 0 || kept.overCell) pen.line(from, v.at.position, kPath, 1.5f * scale);
-      if (v.light.reach > 0 && !v.light.blocked)
+      if (v.light.reach > 0 && v.light.passes > 0)
         pen.line(v.at.position, v.at.position + std::min(v.light.reach, 1e3f) * v.light.direction, kToLight, scale);
       from = v.at.position;
     }

@@ -148,6 +148,10 @@ LAMBENT_API lambent_status lambent_texture_create(lambent_device* device, lamben
 LAMBENT_API lambent_status lambent_texture_destroy(lambent_device* device, lambent_scene scene,
                                                    lambent_texture texture);
 
+/* What alpha (alpha × base_texture × vertex colour) is for. Mask: below alpha_cutoff the surface is not there. Blend: it
+ * lets 1 - alpha of lamps' and suns' light pass exactly, and of all other light in the mean; leave it out of your
+ * G-buffer, and draw it over your image. */
+typedef enum lambent_alpha { LAMBENT_ALPHA_OPAQUE, LAMBENT_ALPHA_MASK, LAMBENT_ALPHA_BLEND } lambent_alpha;
 /* What light and eyes see of a surface: Lambert, albedo = base_color × texture × vertex colour; both sides reflect. */
 typedef struct lambent_material_desc {
   size_t size;
@@ -156,7 +160,7 @@ typedef struct lambent_material_desc {
   float emission[3];            /* radiance of the front side, or of both */
   lambent_texture emission_texture;
   int double_sided;  /* emits on both sides */
-  int masked;        /* 1: what has alpha (alpha × base_texture × vertex colour) below alpha_cutoff is not there */
+  int32_t alpha_mode;        /* lambent_alpha; default opaque */
   float alpha, alpha_cutoff; /* default 1, 0.5 */
   int32_t base_uv_set, emission_uv_set; /* 0: uvs of the mesh, 1: uvs1 */
   float base_uv[6], emission_uv[6]; /* m: a texture is read at (m0 u + m1 v + m2, m3 u + m4 v + m5); default u, v */
@@ -320,7 +324,7 @@ typedef struct lambent_output {
   uint32_t indirect, direct;         /* names of the textures whose RGB holds irradiance now, W/m² (alpha is the library's
                                         own), valid until the next lambent_render of this view; 0: no such light */
   uint32_t depth, normal, albedo, emission; /* surfaces that the library drew: reversed infinite depth, world normals;
-                                        0 with a host's */
+                                        0 with a host's. Of blended surfaces each pixel has one, by chance */
   int converged;                     /* 1: nothing moves, and another frame would bring nothing new */
   double milliseconds;               /* that the call took */
 } lambent_output;

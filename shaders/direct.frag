@@ -17,7 +17,7 @@ layout(std140, binding = 1) uniform Lights { LightRecord lights[kLightsPerBlock]
 uniform float spread; // GLOSSY, EMITTER_MAPS: GatherSettings::spread
 #ifdef LIT
 layout(location = 0) flat in int litLight;
-layout(location = 1) flat in float litShare;
+layout(location = 1) flat in float litTransmittance;
 #else
 uniform int lightCount;
 uniform int firstLight; // DOUBTS: of the block, among the frame's direct lights
@@ -149,7 +149,7 @@ void main() {
       if (answer != kLit) continue;
     }
 #elif defined(LIT)
-    seen = litShare;
+    seen = litTransmittance;
 #else
     seen = shadowOf(light, position, normal, cosine);
 #endif

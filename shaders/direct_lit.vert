@@ -6,12 +6,12 @@ uniform int firstPair;
 uniform int firstLight; // of the block
 uniform vec2 frameSize;
 layout(location = 0) flat out int litLight;
-layout(location = 1) flat out float litShare;
+layout(location = 1) flat out float litTransmittance;
 
 void main() {
   uvec2 pair = texelFetch(litPairs, firstPair + gl_VertexID).rg;
   vec2 pixel = vec2(pair.r & 0xffffu, pair.r >> 16) + 0.5;
   gl_Position = vec4(pixel / frameSize * 2.0 - 1.0, 0.0, 1.0);
   litLight = int(pair.g & 0xffffffu) - firstLight;
-  litShare = float(pair.g >> 24) / 255.0;
+  litTransmittance = float(pair.g >> 24) / 255.0;
 }

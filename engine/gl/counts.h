@@ -59,8 +59,8 @@ void drawPoints(int count);
 /// Runs so many groups of the bound compute program; counted as a draw.
 void dispatch(int groupsX, int groupsY = 1, int groupsZ = 1);
 
-/// Waits until the GPU has done all that it was asked for, so that a clock on the CPU measures it. For measuring only:
-/// a frame that is not measured never does this, so it is not counted.
+/// Waits until the GPU has done all that it was asked for, so that a clock on the CPU measures it. For measuring, and
+/// once for the watch over a first picture: no other frame does this, so it is not counted.
 void finishToMeasure();
 
 } // namespace lambent::gl

@@ -127,6 +127,7 @@ void GpuRays::closest(std::span<const Ray> rays, std::span<SurfaceHit> hits) con
                         {met[i].t, met[i].instance, primitive,
                          met[i].triangle - mesh.primitives[primitive].firstTriangle, met[i].barycentric},
                         rays[i], true, lookups);
+    if (alphaTest_ == AlphaTest::None) hits[i].share = 1;
   }
 }
 

@@ -41,7 +41,7 @@ class GpuRays final : public RayQuery {
   gl::Buffer top_, instances_, nodes_, triangles_, masks_, texels_;
   gl::Ring changes_{"rays/changes"};
   std::vector<InstanceView> placed_;
-  AlphaTest alphaTest_ = AlphaTest::Masked;
+  AlphaTest alphaTest_ = AlphaTest::Needed;
 };
 
 } // namespace lambent

@@ -237,6 +237,8 @@ uint32_t importMaterial(Import& import, int index) {
   if (out.emits()) out.emissiveTexture = importTexture(import, in.emissiveTexture, place + ", emission");
   if (maxComponent(emissive) > 1)
     doc.warn(place + ": emissiveFactor is above 1 (KHR_materials_emissive_strength is meant for that); used as it is");
+  if (in.occlusionTexture.index >= 0)
+    import.counted["material(s) whose occlusionTexture is not used: light is computed"]++;
   out.doubleSided = in.doubleSided;
   out.backHidden = !in.doubleSided;
   if (in.alphaMode == "MASK") {

@@ -76,7 +76,7 @@ bool isCutOut(const SceneAssets& assets, const Mesh& mesh, uint32_t triangle, co
   const Material& material = assets.materials[p.material];
   if (material.alphaMode == AlphaMode::Opaque) return false;
   const float alpha = alphaAt(assets, mesh, material, trianglePlace(mesh, p, triangle - p.firstTriangle, barycentric));
-  return material.alphaMode == AlphaMode::Mask ? alpha < material.alphaCutoff : !isCovered(alpha, key, 0, triangle);
+  return !isThere(material, alpha, key, 0, triangle);
 }
 
 /// Follows rays to their ends.

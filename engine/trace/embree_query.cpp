@@ -2,15 +2,9 @@
 
 #include "engine/core/error.h"
 #include "engine/core/memory.h"
+#include "engine/trace/embree_filters.h"
 #include "engine/trace/surface_hit.h"
-#include "engine/view/surface_point.h"
 #include "shaders/shared/coverage.h"
-
-#if EMBREE_MAJOR >= 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 
 #include <algorithm>
 #include <array>
@@ -22,108 +16,6 @@
 namespace lambent {
 
 namespace {
-
-/// What the alpha filter and hit shading need to know about a geometry of a bottom-level scene.
-struct GeometryData {
-  const SceneAssets* assets;
-  uint32_t mesh, primitive;
-};
-
-/// Of this thread, since they were last added up.
-thread_local uint64_t alphaTests = 0;
-
-#if EMBREE_MAJOR >= 4
-using EmbreeContext = RTCRayQueryContext;
-void beginContext(EmbreeContext& c) { rtcInitRayQueryContext(&c); }
-#else
-using EmbreeContext = RTCIntersectContext;
-void beginContext(EmbreeContext& c) { rtcInitIntersectContext(&c); }
-#endif
-
-/// Of every query; filters know it by its first member.
-struct QueryContext {
-  EmbreeContext embree;
-  float* through = nullptr; // of one ray: multiplied by what blended surfaces let through, which then stop nothing
-  QueryContext() { beginContext(embree); }
-};
-
-/// Lets rays through where an alpha-masked material is cut out, or a blended one not there for them.
-void alphaFilter(const RTCFilterFunctionNArguments* args) {
-  const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
-  const Mesh& mesh = data.assets->meshes[data.mesh];
-  const Primitive& primitive = mesh.primitives[data.primitive];
-  const Material& material = data.assets->materials[primitive.material];
-  for (unsigned i = 0; i < args->N; ++i) {
-    if (args->valid[i] != -1) continue;
-    ++alphaTests;
-    if (material.alphaMode == AlphaMode::Opaque) continue;
-    const vec2 barycentric(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
-    const TrianglePlace place = trianglePlace(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric);
-    const float alpha = alphaAt(*data.assets, mesh, material, place);
-    if (float* through = reinterpret_cast<const QueryContext*>(args->context)->through;
-        through && material.alphaMode == AlphaMode::Blend) {
-      *through *= 1 - std::clamp(alpha, 0.0f, 1.0f);
-      args->valid[i] = 0;
-      continue;
-    }
-    const bool there = material.alphaMode == AlphaMode::Mask
-                           ? alpha >= material.alphaCutoff
-                           : isCovered(alpha, RTCRayN_id(args->ray, args->N, i),
-                                       RTCHitN_instID(args->hit, args->N, i, 0), RTCHitN_primID(args->hit, args->N, i));
-    if (!there) args->valid[i] = 0;
-  }
-}
-
-/// Lets rays of an eye through backs that are hidden.
-void backFilter(const RTCFilterFunctionNArguments* args) {
-  const auto& data = *static_cast<const GeometryData*>(args->geometryUserPtr);
-  const Material& material = data.assets->materials[data.assets->meshes[data.mesh].primitives[data.primitive].material];
-  if (!material.backHidden) return;
-  for (unsigned i = 0; i < args->N; ++i) {
-    const vec3 front(RTCHitN_Ng_x(args->hit, args->N, i), RTCHitN_Ng_y(args->hit, args->N, i),
-                     RTCHitN_Ng_z(args->hit, args->N, i));
-    const vec3 direction(RTCRayN_dir_x(args->ray, args->N, i), RTCRayN_dir_y(args->ray, args->N, i),
-                         RTCRayN_dir_z(args->ray, args->N, i));
-    if (args->valid[i] == -1 && !(glm::dot(front, direction) < 0)) args->valid[i] = 0;
-  }
-}
-
-#if EMBREE_MAJOR >= 4
-constexpr RTCSceneFlags kFilteredByRay = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
-struct TraceArguments {
-  QueryContext context;
-  RTCIntersectArguments intersect;
-  RTCOccludedArguments occluded;
-  TraceArguments() {
-    rtcInitIntersectArguments(&intersect);
-    rtcInitOccludedArguments(&occluded);
-    intersect.context = occluded.context = &context.embree;
-  }
-  TraceArguments(const TraceArguments&) = delete;
-  void hideBacks() {
-    intersect.filter = backFilter;
-    intersect.flags = RTCRayQueryFlags(intersect.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
-  }
-};
-void intersect1(RTCScene s, TraceArguments& a, RTCRayHit* r) { rtcIntersect1(s, r, &a.intersect); }
-void occluded1(RTCScene s, TraceArguments& a, RTCRay* r) { rtcOccluded1(s, r, &a.occluded); }
-void intersect16(const int* valid, RTCScene s, TraceArguments& a, RTCRayHit16* r) {
-  a.intersect.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcIntersect16(valid, s, r, &a.intersect);
-}
-#else
-constexpr RTCSceneFlags kFilteredByRay = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
-struct TraceArguments {
-  QueryContext context;
-  void hideBacks() { context.embree.filter = backFilter; }
-};
-void intersect1(RTCScene s, TraceArguments& a, RTCRayHit* r) { rtcIntersect1(s, &a.context.embree, r); }
-void occluded1(RTCScene s, TraceArguments& a, RTCRay* r) { rtcOccluded1(s, &a.context.embree, r); }
-void intersect16(const int* valid, RTCScene s, TraceArguments& a, RTCRayHit16* r) {
-  a.context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid, s, &a.context.embree, r);
-}
-#endif
 
 uint32_t keyOf(const Ray& r, bool blends) { return r.key != 0 || !blends ? r.key : rayKey(r.origin, r.direction); }
 
@@ -199,7 +91,7 @@ struct EmbreeQuery::State {
   RTCScene top = nullptr;
   std::vector<Instance> instances; // index = Embree instance id = index into SceneView::instances
 
-  AlphaTest alphaTest = AlphaTest::Masked;
+  AlphaTest alphaTest = AlphaTest::Needed;
   bool textures = true;
   bool blends = false; // a material of the assets
   mutable std::atomic<uint64_t> alphaTests{0}, textureLookups{0};
@@ -232,7 +124,7 @@ struct EmbreeQuery::State {
 void EmbreeQuery::State::applyAlphaTest(RTCGeometry g, uint32_t mesh, uint32_t p) {
   const Material& material = assets.materials[assets.meshes[mesh].primitives[p].material];
   const bool tested =
-      alphaTest == AlphaTest::All || (alphaTest == AlphaTest::Masked && material.alphaMode != AlphaMode::Opaque);
+      alphaTest == AlphaTest::All || (alphaTest == AlphaTest::Needed && material.alphaMode != AlphaMode::Opaque);
   rtcSetGeometryUserData(g, &geometryData[mesh][p]);
   rtcSetGeometryIntersectFilterFunction(g, tested ? alphaFilter : nullptr);
   rtcSetGeometryOccludedFilterFunction(g, tested ? alphaFilter : nullptr);
@@ -351,7 +243,7 @@ EmbreeQuery::EmbreeQuery(const SceneAssets& assets) : state_(std::make_unique<St
 
 void EmbreeQuery::takeAssets() {
   State& s = *state_;
-  s.blends = std::ranges::any_of(s.assets.materials, &Material::blends);
+  s.blends = s.assets.blends();
   for (uint32_t m = 0; m < s.assets.meshes.size(); ++m) {
     const Mesh& mesh = s.assets.meshes[m];
     if (m < s.meshes.size()) {
@@ -445,6 +337,7 @@ void EmbreeQuery::trace(std::span<const Ray> rays, std::span<SurfaceHit> hits, b
                      instance.normalFromObject},
                     {rh.ray.tfar, rh.hit.instID[0], rh.hit.geomID, rh.hit.primID, {rh.hit.u, rh.hit.v}}, rays[i],
                     s.textures, lookups);
+    if (s.alphaTest == AlphaTest::None) hit.share = 1;
   }
   if (lookups > 0) s.textureLookups += lookups;
   s.countAlphaTests();
@@ -496,18 +389,18 @@ void EmbreeQuery::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked
   state_->countAlphaTests();
 }
 
-void EmbreeQuery::shares(std::span<const Ray> rays, std::span<float> open) const {
-  if (!state_->blends) return RayQuery::shares(rays, open);
-  CHECK_EQ(rays.size(), open.size());
+void EmbreeQuery::transmittance(std::span<const Ray> rays, std::span<float> passes) const {
+  if (!state_->blends) return RayQuery::transmittance(rays, passes);
+  CHECK_EQ(rays.size(), passes.size());
   TraceArguments arguments;
   for (size_t i = 0; i < rays.size(); ++i) {
-    open[i] = 1;
+    passes[i] = 1;
     if (!state_->traces(rays[i])) continue;
-    arguments.context.through = &open[i];
+    arguments.context.passes = &passes[i];
     RTCRay ray;
     fillRay(ray, rays[i], false);
     occluded1(state_->top, arguments, &ray);
-    if (ray.tfar < 0) open[i] = 0;
+    if (ray.tfar < 0) passes[i] = 0;
   }
   state_->countAlphaTests();
 }

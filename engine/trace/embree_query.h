@@ -34,7 +34,7 @@ class EmbreeQuery final : public RayQuery {
   void seen(std::span<const Ray> rays, std::span<SurfaceHit> hits) const override;
   void distances(std::span<const Ray> rays, std::span<float> t) const override;
   void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const override;
-  void shares(std::span<const Ray> rays, std::span<float> open) const override;
+  void transmittance(std::span<const Ray> rays, std::span<float> passes) const override;
   using RayQuery::closest;
   using RayQuery::occluded;
   using RayQuery::seen;

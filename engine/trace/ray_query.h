@@ -35,6 +35,7 @@ struct SurfaceHit {
   uint32_t primitive = 0;    // of the instance's mesh
   uint32_t triangle = 0;     // within the primitive
   vec2 barycentric{0};       // weights of the triangle's second and third corner
+  float share = 1;           // of rays that meet the surface here: below 1 where it blends
 
   bool valid() const { return t < kInfinity; }
 };
@@ -63,11 +64,11 @@ class RayQuery {
   virtual void occluded(std::span<const Ray> rays, std::span<uint8_t> blocked) const = 0;
 
   /// Finds what part of the light along each segment passes: 0 where something solid lies on it, else the product of
-  /// what blended surfaces let through; or, by chance, 0 or 1.
-  virtual void shares(std::span<const Ray> rays, std::span<float> open) const {
+  /// what blended surfaces let through. A query may answer by chance: 0 or 1, with that mean (this one does).
+  virtual void transmittance(std::span<const Ray> rays, std::span<float> passes) const {
     std::vector<uint8_t> blocked(rays.size());
     occluded(rays, blocked);
-    for (size_t i = 0; i < rays.size(); ++i) open[i] = blocked[i] ? 0.0f : 1.0f;
+    for (size_t i = 0; i < rays.size(); ++i) passes[i] = blocked[i] ? 0.0f : 1.0f;
   }
 
   /// Says whether only the thread that made the query may use it; such a query answers long lists best.

@@ -28,7 +28,9 @@ SurfaceHit surfaceAt(const SceneAssets& assets, const TracedInstance& instance, 
   const bool textured = material.baseColorTexture.image != kNone;
   const vec4* mean = textured && !textures ? &assets.images[material.baseColorTexture.image].averageLinear : nullptr;
   lookups += textured && !mean;
-  hit.albedo = glm::clamp(vec3(baseColourAt(assets, mesh, material, c, mean)), 0.0f, 1.0f);
+  const vec4 baseColour = baseColourAt(assets, mesh, material, c, mean);
+  hit.albedo = glm::clamp(vec3(baseColour), 0.0f, 1.0f);
+  if (material.blends()) hit.share = shareThere(material, baseColour.w);
   if (material.emits() && (fromFront || material.doubleSided))
     hit.emission = material.emission *
                    vec3(sampleTexture(assets, material.emissiveTexture, uvAt(mesh, c, material.emissiveTexture)));

@@ -3,6 +3,7 @@
 
 #include "engine/core/math.h"
 
+#include <algorithm>
 #include <atomic>
 #include <string>
 #include <utility>
@@ -25,8 +26,9 @@ enum class Minify : uint8_t {
   LinearMipmapLinear
 };
 enum class AlphaMode : uint8_t { Opaque, Mask, Blend }; // Blend: shaders/shared/coverage.h
-/// Which surfaces' alpha is tested: none (masks count as solid), masked ones, or all, which lets the others pass.
-enum class AlphaTest : uint8_t { None, Masked, All };
+/// Which surfaces' alpha is tested: none (masked and blended ones count as solid), those two, or all, which lets the
+/// others pass.
+enum class AlphaTest : uint8_t { None, Needed, All };
 
 /// 8-bit RGBA image; row 0 is the row at v = 0 (glTF: the top row of the file). `srgb`: colours are sRGB-encoded,
 /// alpha is linear. `averageLinear` is the mean linear colour over all texels (alpha in w), `least` the smallest of
@@ -188,6 +190,8 @@ struct SceneAssets {
   std::vector<Material> materials; // never empty once loaded: a default white material is added when needed
   std::vector<TextureImage> images;
   Readers readers; // beside the thread that owns it. Last: what goes waits for them first
+
+  bool blends() const { return std::ranges::any_of(materials, &Material::blends); }
 };
 
 /// Bytes of its meshes and textures.

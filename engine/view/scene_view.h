@@ -65,6 +65,7 @@ struct CameraView {
   float orthoHalfHeight = 0;
   float near = 0.05f; // metres; the far plane is at infinity
   int width = 320, height = 180;
+  bool throughBlended = false; // the image lacks blended surfaces, as a host's G-buffer does
 
   vec3 position() const { return vec3(worldFromView[3]); }
   float aspect() const { return float(width) / float(height); }

@@ -1,6 +1,7 @@
 #include "engine/view/surface_point.h"
 
 #include "engine/core/error.h"
+#include "shaders/shared/coverage.h"
 #include "shaders/shared/normal_map.h"
 
 namespace lambent {
@@ -22,6 +23,16 @@ float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Material& mater
     alpha *= sampleAlpha(assets, material.baseColorTexture, uvAt(mesh, place, material.baseColorTexture));
   if (!mesh.colors.empty()) alpha *= place.interpolate(mesh.colors).w;
   return alpha;
+}
+
+bool isThere(const Material& material, float alpha, uint32_t key, uint32_t instance, uint32_t triangle) {
+  if (material.alphaMode == AlphaMode::Mask) return alpha >= material.alphaCutoff;
+  return material.alphaMode == AlphaMode::Opaque || isCovered(alpha, key, instance, triangle);
+}
+
+float shareThere(const Material& material, float alpha) {
+  if (material.alphaMode == AlphaMode::Mask) return alpha >= material.alphaCutoff ? 1.0f : 0.0f;
+  return material.alphaMode == AlphaMode::Opaque ? 1.0f : shareCovered(alpha);
 }
 
 SurfacePoint surfacePoint(const SceneView& view, uint32_t instanceIndex, uint32_t primitiveIndex, uint32_t triangle,

@@ -36,6 +36,12 @@ vec4 baseColourAt(const SceneAssets& assets, const Mesh& mesh, const Material& m
 /// The last of these, without a mean: to the bit, and sooner.
 float alphaAt(const SceneAssets& assets, const Mesh& mesh, const Material& material, const TrianglePlace& place);
 
+/// Whether a surface of that alpha is there: at or above its mask's cutoff, or blended and covered
+/// (shaders/shared/coverage.h) for a ray or pixel of `key`. `triangle` of the primitive.
+bool isThere(const Material& material, float alpha, uint32_t key, uint32_t instance, uint32_t triangle);
+/// Part of pixels and rays that meet a surface of that alpha.
+float shareThere(const Material& material, float alpha);
+
 /// World space. Both normals are unit and on the front side as glTF defines it (counter-clockwise, turned with a
 /// mirrored instance), unlike a hit's, which face the ray. Zero where the triangle has no area and so no side.
 struct SurfacePoint {

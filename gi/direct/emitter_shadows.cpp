@@ -37,8 +37,15 @@ std::vector<LightBlock> EmitterShadowPass::run(const World& world, const ShadowS
   const std::vector<MapJob> jobs =
       jobsAtOnce(poses, poses_, lights, world.moved.boxes(), world.view.changes.first, shadow.emitterResolution);
   poses_ = std::move(poses);
-  const ParaboloidMaps maps =
-      maps_.run({world.gpu, &world.rays, poses_, jobs, world.farDistance, shadow.emitterResolution, shadow.maker});
+  const bool checkered = shadow.rays && world.gpu.blends();
+  const ParaboloidMaps maps = maps_.run({.scene = world.gpu,
+                                         .rays = &world.rays,
+                                         .poses = poses_,
+                                         .jobs = jobs,
+                                         .farDistance = world.farDistance,
+                                         .resolution = shadow.emitterResolution,
+                                         .maker = checkered ? ShadowMaker::Rays : shadow.maker,
+                                         .checkered = checkered});
   stats.mapsDrawn += maps_.mapsDrawn();
 
   const gl::PassScope scope = context_.scope(StageId::Emitters);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace lambent {
 
@@ -202,7 +203,11 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, const s
       target.still = {};
     }
     target.kind = kind;
-    target.depth = in.shadow.rays && kind != MapKind::Sky ? DrawKind::DoubtedDepth : DrawKind::Depth;
+    const DrawKind depth = in.shadow.rays && kind != MapKind::Sky ? DrawKind::CheckeredDepth : DrawKind::Depth;
+    if (std::exchange(target.depth, depth) != depth) {
+      std::ranges::fill(target.drawn, mat4(0));
+      target.stillDrawn.assign(target.stillDrawn.size(), {});
+    }
     std::vector<LightRecord> lights;
     for (int i = 0; i < count; ++i) {
       lights.push_back(maps[first + i].light);

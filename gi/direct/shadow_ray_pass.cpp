@@ -41,7 +41,7 @@ void ShadowRayPass::trace(const RayQuery& rays, const std::function<Ray(const Sh
   parallelFor(doubts_.size(), 512, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) segments[i] = towards(doubts_[i]);
     const size_t n = end - begin;
-    rays.shares(std::span(segments).subspan(begin, n), std::span(open).subspan(begin, n));
+    rays.transmittance(std::span(segments).subspan(begin, n), std::span(open).subspan(begin, n));
   });
   counts.occlusion += doubts_.size();
   lit_.clear();

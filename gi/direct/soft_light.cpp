@@ -60,7 +60,8 @@ void SoftLightPass::add(const Frame& frame, SurfaceReader& reader, SoftParts par
   {
     const CpuScope scope(stats.stages, key(StageId::SoftRays));
     RayCounts counts;
-    const bool byImage = frame.settings.direct.surfaces == SoftSurfaces::Image;
+    // What blends is drawn by alphas of other texels than rays meet, where its texture is minified.
+    const bool byImage = frame.settings.direct.surfaces == SoftSurfaces::Image || frame.surfaces.blended;
     const FrameSurfaces surfaces = byImage ? reader.read(frame.surfaces) : FrameSurfaces{};
     const int samples = frame.settings.direct.samples;
     found = sampleSoftLight({.rays = frame.world.rays,

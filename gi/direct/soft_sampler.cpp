@@ -235,11 +235,11 @@ SoftLight sampleSoftLight(const SoftSampling& in, RayCounts& counts) {
         out.glossy[place.pixel] +=
             light * glossyReflectance(place.receiver, glm::normalize(way), 0) / glossyTint(place.receiver);
     };
-    std::vector<uint8_t> blocked(segments.size());
-    in.rays.occluded(segments, blocked);
+    std::vector<float> passes(segments.size());
+    in.rays.transmittance(segments, passes);
     count.occlusion += segments.size();
     for (size_t k = 0; k < segments.size(); ++k)
-      if (!blocked[k]) bring(places[connected[k].place], connected[k].value, segments[k].direction);
+      if (passes[k] > 0) bring(places[connected[k].place], connected[k].value * passes[k], segments[k].direction);
     std::vector<SurfaceHit> met(rays.size());
     in.rays.closest(rays, met);
     count.closest += rays.size();

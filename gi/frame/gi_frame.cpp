@@ -3,7 +3,6 @@
 #include "engine/core/error.h"
 #include "engine/core/free_memory.h"
 #include "engine/core/memory.h"
-#include "engine/core/open_watch.h"
 #include "engine/gl/context.h"
 #include "engine/gl/counts.h"
 #include "engine/gl/state_guard.h"
@@ -80,13 +79,15 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   k.refuseBeyondMemory(settings);
   if (host) checkHost(*host, given.camera);
+  SceneView seen = given;
+  seen.camera.throughBlended = host != nullptr;
   const Clock::time_point begin = Clock::now();
   const gl::Counts before = gl::counts();
 
   LightProvider& indirect = k.technique();
   indirect.wait();
-  k.begin(given);
-  k.world.take(given, settings);
+  k.begin(seen);
+  k.world.take(seen, settings);
   indirect.begin(k.world.view(), settings);
   k.outputs.inside = indirect.inside(); // parts of another technique are gone
   const Needs needs = needsOf(settings);
@@ -150,10 +151,6 @@ const FrameStats& GiFrame::run(const SceneView& given, const std::function<void(
   }
   k.outputs.inside = indirect.inside();
   k.end(begin, before);
-  if (OpenWatch::any()) {
-    gl::finishToMeasure(); // drivers that draw on the CPU draw later
-    OpenWatch::end();
-  }
   return stats;
 }
 

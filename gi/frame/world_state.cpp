@@ -94,14 +94,14 @@ World WorldState::place(const EffectPlan& plan, FrameStats& stats) {
   CpuScope scope(stats.stages, key(StageId::Scene));
   using enum EffectId;
   const SceneView& view = view_.view();
-  const AlphaTest alpha = !plan.on(Alpha) ? AlphaTest::None : plan.idle(Alpha) ? AlphaTest::All : AlphaTest::Masked;
+  const AlphaTest alpha = !plan.on(Alpha) ? AlphaTest::None : plan.idle(Alpha) ? AlphaTest::All : AlphaTest::Needed;
   rays_->setAlphaTest(alpha);
   gpu_->setAlphaTest(alpha);
   rays_->setTextures(plan.on(Textures));
   stats.of(Motion) = rays_->update(view, plan.idle(Motion));
   gpu_->place(view.instances);
   moved_ = DirtyRegion(view);
-  lights_ = collectLights(view);
+  lights_ = collectLights(view, alpha != AlphaTest::None);
   if (!plan.on(Emissive)) {
     lights_.emitters.clear();
     lights_.triangles.clear();

@@ -37,7 +37,8 @@ Material materialOf(const Scene& s, lambent_scene scene, const lambent_material_
   m.emissiveTexture = textureOf(d.emission_texture, d.emission_uv_set, d.emission_uv);
   m.doubleSided = d.double_sided != 0;
   m.backHidden = d.back_hidden != 0;
-  m.alphaMode = d.masked ? AlphaMode::Mask : AlphaMode::Opaque;
+  requireWithin(d.alpha_mode, 3, "material: alpha_mode");
+  m.alphaMode = AlphaMode(d.alpha_mode);
   m.alpha = d.alpha;
   m.alphaCutoff = d.alpha_cutoff;
   return m;

@@ -14,7 +14,8 @@ constexpr size_t kEnough = 20; // pixels that see something
 constexpr float kAlike = 0.7f; // cosine between normals
 } // namespace
 
-std::string checkSurfaces(const GBuffer& surfaces, const CameraView& camera, const RayQuery& rays) {
+std::string checkSurfaces(const GBuffer& surfaces, CameraView camera, const RayQuery& rays) {
+  camera.throughBlended = true;
   const int width = camera.width, height = camera.height, step = std::max(1, std::max(width, height) / kAcross);
   std::vector<vec2> centres;
   std::vector<size_t> pixels; // rows from the bottom

@@ -10,6 +10,6 @@ namespace lambent::library {
 
 /// Compares surfaces, as converted, with rays through some pixels of the camera. Returns what looks wrong in one line,
 /// and what may cause it; empty: nothing. Reads them back, which waits for the GPU.
-std::string checkSurfaces(const GBuffer& surfaces, const CameraView& camera, const RayQuery& rays);
+std::string checkSurfaces(const GBuffer& surfaces, CameraView camera, const RayQuery& rays);
 
 } // namespace lambent::library

@@ -24,8 +24,11 @@ uint32_t numberOf(const vec3& place) {
 bool textured(const LightSet& lights, const Emitter& emitter) {
   if (!lights.view) return false;
   const InstanceView& instance = lights.view->instances[emitter.instance];
-  const Primitive& primitive = lights.view->assets->meshes[instance.mesh].primitives[emitter.primitive];
-  return lights.view->assets->materials[primitive.material].emissiveTexture.image != kNone;
+  const Mesh& mesh = lights.view->assets->meshes[instance.mesh];
+  const Material& material = lights.view->assets->materials[mesh.primitives[emitter.primitive].material];
+  return material.emissiveTexture.image != kNone ||
+         (lights.alpha && material.alphaMode != AlphaMode::Opaque &&
+          (material.baseColorTexture.image != kNone || !mesh.colors.empty()));
 }
 
 /// The emitters by themselves, each in the parts that do not touch, which are lights of their own: many lamps may be
@@ -33,6 +36,7 @@ bool textured(const LightSet& lights, const Emitter& emitter) {
 LightSet byParts(const LightSet& lights) {
   LightSet parts;
   parts.view = lights.view;
+  parts.alpha = lights.alpha;
   for (const Emitter& emitter : lights.emitters) {
     if (!(emitter.power > 0)) continue;
     const std::span of = std::span(lights.triangles).subspan(emitter.firstTriangle, emitter.triangleCount);

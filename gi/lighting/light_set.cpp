@@ -1,5 +1,6 @@
 #include "gi/lighting/light_set.h"
 
+#include "engine/view/surface_point.h"
 #include "shaders/shared/paraboloid.h"
 
 #include <algorithm>
@@ -10,16 +11,39 @@ namespace lambent {
 
 namespace {
 
-vec3 emissionAt(const SceneView& view, const Emitter& e, uint32_t meshTriangle, vec2 bary) {
+/// Mean over pixels and rays, which meet what is masked or blended in a share of its places.
+vec3 emissionAt(const LightSet& lights, const Emitter& e, uint32_t meshTriangle, vec2 bary) {
+  const SceneView& view = *lights.view;
   const Mesh& mesh = view.assets->meshes[view.instances[e.instance].mesh];
   const Primitive& primitive = mesh.primitives[e.primitive];
   const Material& material = view.assets->materials[primitive.material];
-  if (material.emissiveTexture.image == kNone) return material.emission;
-  const auto& uv = material.emissiveTexture.uvSet == 0 ? mesh.uv0 : mesh.uv1;
-  if (uv.empty()) return material.emission * vec3(sampleTexture(*view.assets, material.emissiveTexture, vec2(0)));
-  const uvec3 t = mesh.triangles[primitive.firstTriangle + meshTriangle];
-  const vec2 at = uv[t.x] * (1 - bary.x - bary.y) + uv[t.y] * bary.x + uv[t.z] * bary.y;
-  return material.emission * vec3(sampleTexture(*view.assets, material.emissiveTexture, at));
+  vec3 emission = material.emission;
+  const bool byAlpha = lights.alpha && material.alphaMode != AlphaMode::Opaque;
+  if (material.emissiveTexture.image == kNone && !byAlpha) return emission;
+  const TrianglePlace place = trianglePlace(mesh, primitive, meshTriangle, bary);
+  if (material.emissiveTexture.image != kNone)
+    emission *=
+        vec3(sampleTexture(*view.assets, material.emissiveTexture, uvAt(mesh, place, material.emissiveTexture)));
+  if (byAlpha) emission *= shareThere(material, alphaAt(*view.assets, mesh, material, place));
+  return emission;
+}
+
+/// The same of a whole triangle, by the means of its textures.
+vec3 meanEmission(const SceneAssets& assets, const Mesh& mesh, const Primitive& primitive, uint32_t triangle,
+                  bool byAlpha) {
+  constexpr float kLeast = 1e-3f; // keeps every triangle reachable: the mean of a texture is not its own
+  const Material& material = assets.materials[primitive.material];
+  vec3 mean = material.emission;
+  if (const uint32_t image = material.emissiveTexture.image; image != kNone)
+    mean *= glm::max(vec3(assets.images[image].averageLinear), vec3(kLeast));
+  if (material.alphaMode == AlphaMode::Opaque || !byAlpha) return mean;
+  const uint32_t image = material.baseColorTexture.image;
+  const TrianglePlace middle = trianglePlace(mesh, primitive, triangle, vec2(1.0f / 3));
+  const float alpha =
+      baseColourAt(assets, mesh, material, middle, image != kNone ? &assets.images[image].averageLinear : nullptr).w;
+  // Of a mask's texels about as many are there as their mean says.
+  const float share = image != kNone ? std::clamp(alpha, 0.0f, 1.0f) : shareThere(material, alpha);
+  return mean * (image != kNone || !mesh.colors.empty() ? std::max(share, kLeast) : share);
 }
 
 /// Emitters one after another along a curve through their places.
@@ -81,8 +105,9 @@ void addEmitter(LightSet& lights, uint32_t instance, uint32_t primitive, std::ve
   lights.emitters.push_back(std::move(e));
 }
 
-LightSet collectLights(const SceneView& view) {
+LightSet collectLights(const SceneView& view, bool alpha) {
   LightSet lights;
+  lights.alpha = alpha;
   lights.view = &view;
   lights.sky = view.sky;
   for (const LightView& l : view.lights)
@@ -95,17 +120,14 @@ LightSet collectLights(const SceneView& view) {
       const Primitive& primitive = mesh.primitives[p];
       const Material& material = view.assets->materials[primitive.material];
       if (!material.emits()) continue;
-      // The mean of the texture stands for a triangle's share only; a small floor keeps every triangle reachable.
-      vec3 mean = material.emission;
-      if (material.emissiveTexture.image != kNone)
-        mean *= glm::max(vec3(view.assets->images[material.emissiveTexture.image].averageLinear), vec3(1e-3f));
       // Front side = outside of the mesh also under mirroring transforms (glTF flips the winding there).
       const bool mirrored = glm::determinant(mat3(instance.worldFromObject)) < 0;
       std::vector<EmitterTriangle> triangles;
       for (uint32_t t = 0; t < primitive.triangleCount; ++t) {
         const uvec3 v = mesh.triangles[primitive.firstTriangle + t];
         const auto world = [&](uint32_t k) { return vec3(instance.worldFromObject * vec4(positions[k], 1)); };
-        EmitterTriangle e = makeEmitterTriangle(world(v.x), world(v.y), world(v.z), mean);
+        EmitterTriangle e = makeEmitterTriangle(world(v.x), world(v.y), world(v.z),
+                                                meanEmission(*view.assets, mesh, primitive, t, alpha));
         if (mirrored) e.normal = -e.normal;
         e.meshTriangle = t;
         triangles.push_back(e);
@@ -181,7 +203,7 @@ EmitterPoint sampleEmitter(const LightSet& lights, const Emitter& emitter, const
   EmitterPoint s;
   s.position = t.p0 + t.e1 * bary.x + t.e2 * bary.y;
   s.normal = t.normal;
-  s.radiance = lights.view ? emissionAt(*lights.view, emitter, t.meshTriangle, bary) : t.radiance;
+  s.radiance = lights.view ? emissionAt(lights, emitter, t.meshTriangle, bary) : t.radiance;
   s.pdfArea = emitter.byPower.probability(k) / t.area;
   return s;
 }

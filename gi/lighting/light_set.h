@@ -36,6 +36,7 @@ struct LightSet {
   Sky sky;
   LightTree tree;       // over the lights above, rebuilt when any of them changes; few need none (LightChoice)
   bool emission = true; // false: what glows is not a light, and has no emitters
+  bool alpha = true;    // false: rays meet masked and blended surfaces as if they were solid
   const SceneView* view = nullptr; // for textured emission; null: emission is `EmitterTriangle::radiance`
 
   bool empty() const { return punctual.empty() && emitters.empty() && sky.black(); }
@@ -45,8 +46,8 @@ struct LightSet {
 };
 
 /// Collects the lights of a view. Emissive materials whose texture is black on average are kept (their texels may not
-/// be). `view` must outlive the result.
-LightSet collectLights(const SceneView& view);
+/// be). `view` must outlive the result. `alpha`: as LightSet.
+LightSet collectLights(const SceneView& view, bool alpha = true);
 
 /// Adds an emitter by hand (tests, generated lights): each triangle with its own radiance.
 void addEmitter(LightSet& lights, uint32_t instance, uint32_t primitive, std::vector<EmitterTriangle> triangles,

@@ -20,8 +20,9 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
   for (const vec2& p : points) {
     const CameraRay r = cameraRay(camera, p.x, p.y);
     const ivec2 pixel(vec2(p.x, 1 - p.y) * vec2(camera.width, camera.height)); // from the bottom
+    const uint32_t own = camera.throughBlended ? kMeetsNone : pixelKey(uint32_t(pixel.x), uint32_t(pixel.y));
     block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction, kInfinity,
-                     key.value_or(pixelKey(uint32_t(pixel.x), uint32_t(pixel.y)))});
+                     key.value_or(own)});
   }
   std::vector<SurfaceHit> hits(block.size());
   rays.seen(block, hits);

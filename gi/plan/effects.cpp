@@ -14,7 +14,7 @@ constexpr EffectRow kRows[kEffects] = {
     {"bounces", "light paths beyond the first surface that reflects; off: one bounce", "rays"},
     {"emissive", "light from emissive surfaces; off: they glow and light nothing", "shadow maps and rays"},
     {"sky", "light from the sky; off: it is seen and lights nothing", "shadow maps and rays"},
-    {"alpha", "cut-out materials let light through their holes", "tests and draws"},
+    {"alpha", "cut-out and blended materials let light through", "tests and draws"},
     {"textures", "light takes the colour of the texel it meets; off: the texture's mean", "lookups"},
     {"motion", "objects move; off: they stay where they were when it was switched off", "objects placed"},
     {"mapRefresh", "shadow maps of VPLs follow objects that move", "maps and rays"},

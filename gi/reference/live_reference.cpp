@@ -75,7 +75,7 @@ class LiveReference::Tracing {
             .seed = seed_,
             .glossy = task_->paths.glossy ? &view : nullptr,
             .normalMaps = task_->paths.normalMaps ? &view : nullptr,
-            .blended = tracesBlended(view) ? &view : nullptr,
+            .blended = view.assets->blends() ? &view : nullptr,
             .stopped = &stopped_};
   }
 

@@ -24,7 +24,9 @@ struct ReferenceInputs {
   /// Lambert.
   const SceneView* glossy = nullptr;
   const SceneView* normalMaps = nullptr; // primary hits have the normals of this view's maps; null: the meshes' own
-  const SceneView* blended = nullptr; // has blended materials, which rays meet by chance and images mix; null: none
+  /// The view, where it has blended materials: each sample meets them by a chance of its own, and Beauty is mixed as
+  /// blend.frag does (its errors are those of pixels before). Null: rays' own bits decide.
+  const SceneView* blended = nullptr;
   /// Another thread sets it to make addSamples return soon; what was added is then part of a pass and of no use.
   const std::atomic<bool>* stopped = nullptr;
 };

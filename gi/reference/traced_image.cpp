@@ -78,10 +78,6 @@ bool tracesNormalMaps(const SceneView& view, const Settings& settings) {
          std::ranges::any_of(view.assets->materials, [](const Material& m) { return m.normalTexture.image != kNone; });
 }
 
-bool tracesBlended(const SceneView& view) {
-  return view.assets && std::ranges::any_of(view.assets->materials, &Material::blends);
-}
-
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan) {
   EmbreeQuery rays(*view.assets);
   rays.update(view);
@@ -94,7 +90,7 @@ TracedImage traceImage(const SceneView& view, const Settings& settings, const Tr
                            .seed = plan.seed,
                            .glossy = tracesGlossy(view, settings, plan.buffer) ? &view : nullptr,
                            .normalMaps = tracesNormalMaps(view, settings) ? &view : nullptr,
-                           .blended = tracesBlended(view) ? &view : nullptr,
+                           .blended = view.assets->blends() ? &view : nullptr,
                            .stopped = plan.stopped};
   TracedImage out{.bounces = in.bounces, .clamp = in.clamp};
   OpenWatch::end(); // paths take what they are asked for

@@ -39,8 +39,6 @@ bool tracesGlossy(const SceneView& view, const Settings& settings, ReferenceBuff
 
 /// Says whether the truth has the normals of normal maps where the camera looks.
 bool tracesNormalMaps(const SceneView& view, const Settings& settings);
-/// Says whether it has blended materials.
-bool tracesBlended(const SceneView& view);
 
 /// Traces a view. Throws InputError for a state file of another image.
 TracedImage traceImage(const SceneView& view, const Settings& settings, const TracePlan& plan);

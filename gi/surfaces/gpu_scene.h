@@ -35,7 +35,7 @@ enum class DrawKind {
   GlossyMappedGBuffer,
   DistanceNormal,
   Depth,
-  DoubtedDepth,
+  CheckeredDepth,
   Blended
 };
 inline DrawKind gBufferWith(bool glossy, bool mapped) { return DrawKind(int(glossy) + 2 * int(mapped)); }
@@ -67,7 +67,7 @@ class GpuScene {
     return draw(kind, clipFromWorld, eye, Instances::All, mat3(1), true);
   }
 
-  /// Sets which alpha test draws use; AlphaTest::Masked at the start.
+  /// Sets which alpha test draws use; AlphaTest::Needed at the start.
   void setAlphaTest(AlphaTest test) {
     if (std::exchange(alphaTest_, test) != test) stillVersion_ = nextVersion();
   }
@@ -134,7 +134,7 @@ class GpuScene {
   uint32_t samplerFor(const TextureRef& ref);
   void bindMaterial(uint32_t index) const;
   bool tested(const MaterialDraw& material) const {
-    return alphaTest_ == AlphaTest::All || (alphaTest_ == AlphaTest::Masked && material.alphaMode != AlphaMode::Opaque);
+    return alphaTest_ == AlphaTest::All || (alphaTest_ == AlphaTest::Needed && material.alphaMode != AlphaMode::Opaque);
   }
   const gl::Program& programFor(DrawKind kind, const MaterialDraw& material) const;
 
@@ -157,7 +157,7 @@ class GpuScene {
   Aabb bounds_;
   uint32_t triangleCount_ = 0;
   bool blends_ = false;
-  AlphaTest alphaTest_ = AlphaTest::Masked;
+  AlphaTest alphaTest_ = AlphaTest::Needed;
   mutable uint64_t testedDraws_ = 0;
 };
 

@@ -356,7 +356,7 @@ void GpuScene::uploadMaterials(const SceneAssets& assets) {
          textureOf(m.normalTexture), samplerOf(m.baseColorTexture), samplerOf(m.emissiveTexture),
          samplerOf(m.roughnessMetalnessTexture), samplerOf(m.normalTexture), m.alphaMode, m.backHidden});
   }
-  blends_ = std::ranges::any_of(assets.materials, &Material::blends);
+  blends_ = assets.blends();
   materials_ = gl::Buffer("scene/materials", bytes.size(), bytes.data(), 0);
 }
 

@@ -1,6 +1,7 @@
 #include "gi/viewer/viewer.h"
 
 #include "engine/core/error.h"
+#include "engine/core/open_watch.h"
 #include "engine/core/text.h"
 #include "engine/gl/state_guard.h"
 #include "gi/viewer/viewer_stages.h"
@@ -88,6 +89,10 @@ const FrameStats& Viewer::run(const SceneView& view, const std::function<void(in
                                                 .sky = results.sky,
                                                 .mixes = true});
   expose(drawn, std::exchange(elapsed_, 0.0f));
+  if (OpenWatch::any()) {
+    gl::finishToMeasure(); // drivers that draw on the CPU draw later
+    OpenWatch::end();
+  }
   for (const StageTime& row : passes_->context.profiler.takeRows()) stats.stages.push_back(row);
   const gl::Counts asked = gl::counts() - before;
   stats.draws += asked.draws;

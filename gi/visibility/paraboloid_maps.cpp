@@ -10,6 +10,7 @@
 #include "engine/gl/profiler.h"
 #include "engine/gl/pulse.h"
 #include "engine/trace/ray_query.h"
+#include "shaders/shared/coverage.h"
 #include "shaders/shared/shadow_lookup.h"
 
 #include <algorithm>
@@ -79,7 +80,8 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
         for (int x = bx; x < std::min(bx + block, texels.x1); x += step) {
           const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
           if (d.z < -2.0f * float(step) / float(n)) continue; // as map_resample.frag
-          rays.push_back({origin, worldFromLight * d, in.farDistance});
+          const uint32_t key = !in.checkered ? 0 : (x / step + y / step) % 2 ? kMeetsAll : kMeetsNone;
+          rays.push_back({origin, worldFromLight * d, in.farDistance, key});
           texelOfRay.push_back(uint32_t((y - texels.y0) * width + x - texels.x0));
         }
   std::vector<float> met(rays.size());
@@ -138,7 +140,8 @@ void ParaboloidMapPass::draw(const ParaboloidMapInputs& in, std::span<const MapJ
 }
 
 bool ParaboloidMapPass::redrawsAll(const ParaboloidMapInputs& in) const {
-  return resolution_ != in.resolution || farDistance_ != in.farDistance || slots_ != in.poses.size();
+  return resolution_ != in.resolution || farDistance_ != in.farDistance || slots_ != in.poses.size() ||
+         checkered_ != in.checkered;
 }
 
 void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
@@ -162,6 +165,7 @@ void ParaboloidMapPass::allocate(const ParaboloidMapInputs& in) {
                                          .layers = i + 1 < needed ? kLayersPerArray : lastLayers});
   resolution_ = in.resolution;
   farDistance_ = in.farDistance;
+  checkered_ = in.checkered;
   slots_ = in.poses.size();
 }
 

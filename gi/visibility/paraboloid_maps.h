@@ -22,6 +22,7 @@ struct ParaboloidMapInputs {
   float farDistance = 1;             // scene diameter, metres
   int resolution = 128;              // no map is kept when it, farDistance or their number changes
   ShadowMaker maker = ShadowMaker::Auto;
+  bool checkered = false;  // blended surfaces are in every other texel, so that none agree on them. By rays only
   bool jobsAreAll = false; // where none is kept too, since slots without a job have no light; else all are drawn then
 };
 
@@ -66,6 +67,7 @@ class ParaboloidMapPass {
   int resolution_ = 0;
   size_t slots_ = 0;
   float farDistance_ = 0;
+  bool checkered_ = false;
   uint32_t mapsDrawn_ = 0;
 };
 

@@ -32,7 +32,7 @@ std::vector<CandidateHit> traceCandidates(const RayQuery& rays, std::span<const 
     // Points that are not finite would corrupt the nearest-neighbour trees.
     if (h.valid() && isFinite(h.position) && isFinite(h.normal))
       out.push_back({h.position, h.normal, h.geometricNormal, h.albedo, pointOf(i).position, h.instance, h.primitive,
-                     h.triangle, h.barycentric});
+                     h.triangle, h.barycentric, h.share});
   }
   return out;
 }

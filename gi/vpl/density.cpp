@@ -84,7 +84,7 @@ std::vector<float> representedAreas(std::span<const DensityPoint> queries, std::
         kth = distance2[found - 1];
         seen = 1;
       }
-      areas[i] = std::min(areaLimit, kPi * kth / float(seen));
+      areas[i] = std::min(areaLimit, kPi * kth / float(seen)) * queries[i].share;
     }
   });
   return areas;

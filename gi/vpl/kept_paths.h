@@ -14,7 +14,7 @@ namespace lambent {
 struct KeptConnection {
   vec3 direction{0}; // as of LightConnection::segment
   float reach = 0;   // its tMax; 0: none was tested
-  bool blocked = false;
+  float passes = 1;  // part of its light
 };
 
 struct KeptVertex {

@@ -50,7 +50,7 @@ std::vector<float> areasPerHit(std::span<const CandidateHit> hits, std::span<con
   constexpr int kNeighbours = 16; // one such area is known to 25 %
   std::vector<DensityPoint> all, queries;
   all.reserve(hits.size());
-  for (const CandidateHit& h : hits) all.push_back({h.position, h.normal});
+  for (const CandidateHit& h : hits) all.push_back({h.position, h.normal, h.share});
   for (uint32_t i : chosen) queries.push_back(all[i]);
   // Each query is itself among them: the nearest of k + 1.
   std::vector<float> areas =

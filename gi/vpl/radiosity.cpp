@@ -288,13 +288,13 @@ class VplEstimator {
 
   /// The light of all that was added since the last call.
   vec3 addedLight(PathCounts& counts) {
-    blocked_.resize(tested_.size());
-    rays_.occluded(tested_, blocked_);
+    passes_.resize(tested_.size());
+    rays_.transmittance(tested_, passes_);
     counts.rays.occlusion += tested_.size();
-    for (size_t j = 0; j < asked_.size(); ++j) asked_[j]->blocked = blocked_[j];
+    for (size_t j = 0; j < asked_.size(); ++j) asked_[j]->passes = passes_[j];
     vec3 sum(0);
     for (const Pending& p : pending_)
-      if (!p.connection->blocked) sum += p.value;
+      if (p.connection->passes > 0) sum += p.value * p.connection->passes;
     tested_.clear();
     asked_.clear();
     pending_.clear();
@@ -322,7 +322,7 @@ class VplEstimator {
   std::vector<Pending> pending_;
   std::vector<int> owners_;
   std::vector<KeptConnection*> asked_;
-  std::vector<uint8_t> blocked_;
+  std::vector<float> passes_;
   std::vector<SurfaceHit> hits_;
 };
 

@@ -54,6 +54,7 @@ struct CandidateHit {
   uint32_t instance = 0; // index into SceneView::instances
   uint32_t primitive = 0, triangle = 0;
   vec2 barycentric{0};
+  float share = 1; // as SurfaceHit
 };
 
 /// Stage 3. `count` cosine-distributed rays spread evenly over the visible points; misses give no hit.
@@ -135,6 +136,7 @@ inline bool sameSide(const vec3& normalA, const vec3& normalB) { return glm::dot
 /// A place of a light.
 struct DensityPoint {
   vec3 position, normal;
+  float share = 1; // of its surface's area that counts: of what blends rays meet a part
 };
 /// The points of those lights that are alive, and which these are.
 struct LivePoints {
@@ -146,6 +148,7 @@ template <class Light> LivePoints livePoints(std::span<const Light> lights) {
   for (uint32_t i = 0; i < lights.size(); ++i)
     if (lights[i].alive) {
       live.points.push_back({lights[i].position, lights[i].normal});
+      if constexpr (requires { lights[i].share; }) live.points.back().share = lights[i].share;
       live.slots.push_back(i);
     }
   return live;
@@ -243,7 +246,8 @@ std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, s
                                const SceneView* normalMaps = nullptr);
 
 /// What the camera sees at points (u, v) of its image, v down, in [0, 1]. Rays start at the near plane, as the
-/// rasteriser's, and meet of blended surfaces those that it shows there; or have all the key that is given (shaders/shared/coverage.h).
+/// rasteriser's, and meet of blended surfaces those that it shows there; or have all the key that is given
+/// (shaders/shared/coverage.h).
 std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points,
                                    const SceneView* normalMaps = nullptr, std::optional<uint32_t> key = {});
 

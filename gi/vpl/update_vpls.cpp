@@ -219,7 +219,7 @@ VplChanges iterate(VplSet& set, const VplUpdate& in, const ChangesSince& since, 
   {
     CpuScope scope(log.stages, key(StageId::Replace));
     std::vector<DensityPoint> queries;
-    for (const Vpl& v : set.pool) queries.push_back({v.position, v.normal});
+    for (const Vpl& v : set.pool) queries.push_back({v.position, v.normal, v.share});
     const std::vector<float> areas =
         representedAreas(queries, livePoints<Vpl>(set.slots).points, false, 1, settings.density, areaLimit(set));
     for (size_t i = 0; i < set.pool.size(); ++i) set.pool[i].candidateArea = areas[i];
@@ -260,6 +260,7 @@ Vpl vplAt(const CandidateHit& h, const SceneView& view, uint64_t id) {
   const mat3 normalFromWorld = glm::transpose(mat3(carrier.worldFromObject));
   Vpl v;
   v.albedo = h.albedo;
+  v.share = h.share;
   v.mailbox = h.from;
   v.instance = carrier.id;
   v.place = {vec3(glm::inverse(carrier.worldFromObject) * vec4(h.position, 1)),

@@ -2,6 +2,7 @@
 #include "engine/core/parallel.h"
 #include "engine/core/rng.h"
 #include "gi/vpl/smc.h"
+#include "shaders/shared/coverage.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ std::vector<VisiblePoint> findVisiblePoints(const RayQuery& rays, const CameraVi
       const vec2 jitter = rng.next2();
       const CameraRay r =
           cameraRay(camera, (float(i % columns) + jitter.x) / columns, (float(i / columns) + jitter.y) / rows);
-      block.push_back({r.origin, r.direction});
+      block.push_back({r.origin, r.direction, kInfinity, camera.throughBlended ? kMeetsNone : 0});
     }
     rays.seen(block, std::span(hits).subspan(begin, end - begin));
   });

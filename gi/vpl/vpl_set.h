@@ -39,6 +39,7 @@ struct Vpl {
   uint32_t bornFrame = 0;
   uint32_t instance = 0; // InstanceView::id of the object that carries it
   SurfacePlace place;    // on that object: VPLs ride on it
+  float share = 1;       // as SurfaceHit
   vec3 mailbox{0};       // a point seen by both the camera and this VPL, already off its surface
   bool alive = false;    // false: empty slot, brings no light
   bool valid = false;    // indirectly visible in this frame as far as known
@@ -54,6 +55,7 @@ inline Vpl patchOf(const SurfaceHit& h, uint64_t id) {
   v.normal = h.normal;
   v.geometricNormal = h.geometricNormal;
   v.albedo = h.albedo;
+  v.share = h.share;
   v.id = id;
   return v;
 }

@@ -113,7 +113,7 @@ class Syncing {
       uses(m.emissiveTexture, d.emission_texture, d.emission_uv_set, d.emission_uv);
       d.double_sided = m.doubleSided;
       d.back_hidden = m.backHidden;
-      d.masked = m.alphaMode != AlphaMode::Opaque; // blended: a mask
+      d.alpha_mode = int32_t(m.alphaMode);
       d.alpha = m.alpha;
       d.alpha_cutoff = m.alphaCutoff;
       lambent_material made = 0;

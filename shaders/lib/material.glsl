@@ -27,7 +27,7 @@ vec4 baseColorAt(vec4 uv01, vec4 vertexColor) {
 }
 
 #ifdef ALPHA_MASK
-#if defined(ALPHA_BLEND) || defined(EVERY_OTHER)
+#if defined(ALPHA_BLEND) || defined(CHECKERED)
 #include "shared/coverage.h"
 #endif
 #ifdef ALPHA_BLEND
@@ -37,7 +37,7 @@ layout(location = 6) flat in uint instance;
 bool isCutOut(float alpha) {
 #ifdef ALPHA_BLEND
   return !isCovered(alpha, pixelKey(uint(gl_FragCoord.x), uint(gl_FragCoord.y)), instance, uint(gl_PrimitiveID));
-#elif defined(EVERY_OTHER)
+#elif defined(CHECKERED)
   bool other = (int(gl_FragCoord.x) + int(gl_FragCoord.y)) % 2 == 0;
   return alpha <= kLeastBlended || (alpha < 1.0 - kLeastBlended && other);
 #else

@@ -42,7 +42,7 @@ SHARED_INLINE uint coverageHash(uint x, uint y, uint z) {
 }
 
 /// What a pixel or ray draws its chances by. 0 is none: of a ray, that its own bits give one.
-const uint kOfPixel = 0x80000000u, kMeetsAll = 0xffffffffu;
+const uint kOfPixel = 0x80000000u, kMeetsAll = 0xffffffffu, kMeetsNone = 0xfffffffeu;
 /// `pixel` from the bottom left.
 SHARED_INLINE uint pixelKey(uint x, uint y) { return kOfPixel | (y & 0x3fffu) << 14 | (x & 0x3fffu); }
 SHARED_INLINE uint rayKey(vec3 origin, vec3 direction) {
@@ -54,10 +54,16 @@ SHARED_INLINE uint rayKey(vec3 origin, vec3 direction) {
 /// Where a blended surface's alpha is nearer to 0 or 1 than this, it is taken for not there, or solid.
 const float kLeastBlended = 1.0f / 255.0f;
 
+/// Part of pixels and rays that meet a blended surface.
+SHARED_INLINE float shareCovered(float alpha) {
+  return alpha <= kLeastBlended ? 0.0f : alpha >= 1.0f - kLeastBlended ? 1.0f : alpha;
+}
+
 /// Whether a blended triangle (of its primitive) of an instance is there. Each draws anew, so that of several behind
 /// one another each takes its share of what the others leave.
 SHARED_INLINE bool isCovered(float alpha, uint key, uint instance, uint triangle) {
-  if (key == kMeetsAll) return alpha > kLeastBlended;
+  if (alpha <= kLeastBlended || key == kMeetsNone) return alpha >= 1.0f - kLeastBlended;
+  if (alpha >= 1.0f - kLeastBlended || key == kMeetsAll) return true;
   bool ofPixel = (key & kOfPixel) != 0u;
   uint x = key & 0x3fffu, y = (key >> 14) & 0x3fffu;
   // In each tile anew: panes behind one another would be the same stripes everywhere, and where two draw one lattice,

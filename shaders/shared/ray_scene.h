@@ -34,8 +34,8 @@ struct RayInstance {
 /// a byte per texel, four to a word, in rows from v = 0 on.
 struct RayMask {
   vec4 corners[3]; // xy: coordinates in the image, [0,1] being all of it; z: alpha that the texel's is multiplied by;
-                   // w of the first: the cutoff,
-                   // below 0: blended, then of the second which of its primitive's triangles it is
+                   // w of the first: the cutoff, or −1 where it is blended; of the second then: the triangle's
+                   // number in its primitive
   uint firstTexel;
   int width, height; // 0: no image, its alpha is 1
   uint modes;        // wrapU | wrapV · 4 | nearest · 16; of wraps: 0 repeat, 1 mirrored, 2 clamped

@@ -101,7 +101,7 @@ TEST_F(CountsTest, ARunOfOneMaterialIsOneDraw) {
   gpu.setAlphaTest(AlphaTest::None);
   EXPECT_EQ(gpu.draw(DrawKind::GBuffer, everything), 3u);
   EXPECT_EQ(gpu.draw(DrawKind::Depth, everything), 1u);
-  gpu.setAlphaTest(AlphaTest::Masked);
+  gpu.setAlphaTest(AlphaTest::Needed);
   EXPECT_EQ(gpu.draw(DrawKind::Depth, everything), 2u);
   EXPECT_EQ(gpu.testedDraws(), 1u);
   gpu.setAlphaTest(AlphaTest::All);

@@ -50,7 +50,7 @@ TEST_F(Library, TexturesAndMaterialsChangeAndEnd) {
   room.ok(lambent_material_set(room.device, room.scene, material, &m));
   EXPECT_NEAR(seen(0), 0, 0.01);
   EXPECT_NEAR(seen(1), 1, 0.01);
-  m.masked = 1;
+  m.alpha_mode = LAMBENT_ALPHA_MASK;
   room.ok(lambent_material_set(room.device, room.scene, material, &m));
   EXPECT_NEAR(seen(0), 0.8, 0.01) << "the wall behind";
   m.base_uv_set = 2;
@@ -94,6 +94,71 @@ TEST_F(Library, HiddenBacksAreNotSeen) {
   m.back_hidden = 1;
   room.ok(lambent_material_set(room.device, room.scene, material, &m));
   EXPECT_NEAR(seen(), 0.8, 0.01) << "the wall behind";
+}
+
+/// Its G-buffer, which blended surfaces are not in, is that of the room without them.
+TEST_F(Library, BlendedLetsItsShareOfLightPass) {
+  std::string heard;
+  lambent_device_desc desc;
+  LAMBENT_DEFAULTS(LAMBENT_DEVICE_DESC, &desc);
+  desc.user = &heard;
+  desc.log = [](void* user, lambent_level, const char* line) { *static_cast<std::string*>(user) += line; };
+  Room room(&desc);
+  const lambent_view view = room.view();
+  lambent_frame f = Room::frame();
+  {
+    const lambent_output own = room.render(view);
+    std::vector<float> depth = Room::read(own.depth, GL_DEPTH_COMPONENT);
+    for (float& d : depth) d = f.near_plane / d;
+    f.depth = textureOf(GL_R32F, Room::kWidth, Room::kHeight, 1, depth);
+    f.depth_type = LAMBENT_DEPTH_LINEAR;
+    f.normal = textureOf(GL_RGB16F, Room::kWidth, Room::kHeight, 3, Room::read(own.normal, GL_RGB));
+  }
+  const std::vector<float> normals = Room::read(f.normal, GL_RGB);
+  struct Light {
+    double floor = 0, all = 0, indirect = 0; // direct light of the floor and of everything, indirect light
+  };
+  const auto light = [&](lambent_material pane, std::vector<float> corners) {
+    lambent_instance instance = 0;
+    if (pane) {
+      const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+      lambent_mesh_desc mesh;
+      LAMBENT_DEFAULTS(LAMBENT_MESH_DESC, &mesh);
+      mesh.vertex_count = 4;
+      mesh.triangle_count = 2;
+      mesh.positions = corners.data();
+      mesh.indices = indices;
+      mesh.material = pane;
+      lambent_mesh made = 0;
+      room.ok(lambent_mesh_create(room.device, room.scene, &mesh, &made));
+      room.ok(lambent_instance_create(room.device, room.scene, made, kIdentity, &instance));
+    }
+    lambent_output out;
+    for (int i = 0; i < 4; ++i) out = room.render(view, f);
+    const std::vector<float> direct = Room::read(out.direct, GL_RGB);
+    Light sum{0, Room::mean(direct), Room::mean(Room::read(out.indirect, GL_RGB))};
+    for (size_t i = 0; i < direct.size(); ++i)
+      if (normals[i / 3 * 3 + 1] > 0.9f) sum.floor += double(direct[i]);
+    if (pane) room.ok(lambent_instance_destroy(room.device, room.scene, instance));
+    return sum;
+  };
+  const Light open = light(0, {});
+  lambent_material_desc m;
+  LAMBENT_DEFAULTS(LAMBENT_MATERIAL_DESC, &m);
+  for (float& c : m.base_color) c = 0;
+  m.alpha_mode = LAMBENT_ALPHA_BLEND;
+  m.alpha = 0.75f;
+  lambent_material pane = 0;
+  room.ok(lambent_material_create(room.device, room.scene, &m, &pane));
+  EXPECT_NEAR(light(pane, {-1, 0.3f, -1, 1, 0.3f, -1, 1, 0.3f, 1, -1, 0.3f, 1}).floor / open.floor, 0.25, 0.01)
+      << "below the lamp";
+  const Light before = light(pane, {-1, -1, 0.8f, 1, -1, 0.8f, 1, 1, 0.8f, -1, 1, 0.8f});
+  EXPECT_NEAR(before.all / open.all, 1, 0.01) << "the camera looks through it";
+  const Light behind = light(pane, {-1, -1, 0.95f, 1, -1, 0.95f, 1, 1, 0.95f, -1, 1, 0.95f});
+  EXPECT_NEAR(before.indirect / behind.indirect, 1, 0.1) << "before the camera or behind it";
+  EXPECT_EQ(heard, "");
+  m.alpha_mode = 3;
+  EXPECT_EQ(lambent_material_set(room.device, room.scene, pane, &m), LAMBENT_INVALID_ARGUMENT);
 }
 
 TEST_F(Library, ShadersAreReadAgainWhileAHostRuns) {

@@ -46,7 +46,7 @@ class Caller {
       for (float& v : m.base_color) v = value();
       for (float& v : m.emission) v = one(3) ? value() : 0;
       m.base_texture = one(3) ? any(textures_) : 0;
-      m.masked = below(2);
+      m.alpha_mode = below(4) - one(9);
       if (one(4)) m.alpha = value(), m.alpha_cutoff = value();
       if (one(4)) m.base_uv_set = below(4) - 1, m.base_uv[below(6)] = value();
       lambent_material made = 0;

@@ -109,7 +109,7 @@ std::vector<Variant> sidesOf(const BenchOptions& options, const LaunchContext& o
 
 void benchSides(const BenchOptions& options) {
   if (!options.techniques.empty()) refuseTechnique(options, "goes into --techniques, with the others");
-  const auto opened = openLaunch(options.launch);
+  const auto opened = openLaunch(options.launch, WatchUntil::FirstPicture);
   const std::vector<Variant> variants = sidesOf(options, *opened);
   if (std::ranges::any_of(variants, [](const Variant& v) { return needsOf(v.settings).reflective(); }))
     needPunctualLight(*opened);

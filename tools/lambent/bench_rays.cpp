@@ -38,7 +38,7 @@ constexpr const char* kDifferences[] = {"the same",
                                         "at an end of the segment (as near)",
                                         "at an edge (a thousandth of the triangle)",
                                         "grazing (a thousandth of a right angle)",
-                                        "at the border of a mask",
+                                        "at the border of a mask, or on what is blended",
                                         "other"};
 
 Difference differenceOf(const SceneView& view, float rayEpsilon, const Ray& ray, const SurfaceHit& a,
@@ -57,7 +57,7 @@ Difference differenceOf(const SceneView& view, float rayEpsilon, const Ray& ray,
     if (least < 1e-3f) return Difference::Edge;
     if (std::abs(glm::dot(h->geometricNormal, glm::normalize(ray.direction))) < 1.6e-3f) return Difference::Grazing;
     const Mesh& mesh = view.assets->meshes[view.instances[h->instance].mesh];
-    if (view.assets->materials[mesh.primitives[h->primitive].material].alphaMode == AlphaMode::Mask)
+    if (view.assets->materials[mesh.primitives[h->primitive].material].alphaMode != AlphaMode::Opaque)
       return Difference::Alpha;
   }
   return Difference::Other;

@@ -28,7 +28,8 @@ void declareTechniques(CLI::App& app);
 /// Of --buffer: the names of all that can be looked at. `doing`: "draw", "record".
 std::string bufferHelp(const std::string& standard, const std::string& doing);
 /// Opens what the options say; its notes and warnings go to stderr, unless quiet.
-std::unique_ptr<LaunchContext> openAndSay(const LaunchOptions& launch, bool quiet);
+std::unique_ptr<LaunchContext> openAndSay(const LaunchOptions& launch, bool quiet,
+                                          WatchUntil until = WatchUntil::Opened);
 /// Notes and warnings on stderr, unless quiet.
 void say(const LaunchContext& opened, bool quiet);
 /// What a frame warns of, if anything: also where quiet.

@@ -46,7 +46,7 @@ void render(const RenderOptions& options) {
   const Buffer buffer = bufferByName(options.buffer);
   const std::string& out = options.output.out;
   checkPictureName(out);
-  const auto opened = openAndSay(options.launch, options.output.quiet);
+  const auto opened = openAndSay(options.launch, options.output.quiet, WatchUntil::FirstPicture);
   GlContext context = GlContext::headless();
   Viewer gi(opened->settings, opened->seed);
   std::optional<Progress> progress(std::in_place, "placing virtual lights", options.output.quiet);

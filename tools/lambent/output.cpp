@@ -42,8 +42,8 @@ std::string bufferHelp(const std::string& standard, const std::string& doing) {
   return "what to " + doing + ": " + names + "; to look inside: " + views;
 }
 
-std::unique_ptr<LaunchContext> openAndSay(const LaunchOptions& launch, bool quiet) {
-  std::unique_ptr<LaunchContext> opened = openLaunch(launch);
+std::unique_ptr<LaunchContext> openAndSay(const LaunchOptions& launch, bool quiet, WatchUntil until) {
+  std::unique_ptr<LaunchContext> opened = openLaunch(launch, until);
   say(*opened, quiet);
   return opened;
 }

@@ -10,7 +10,8 @@
 
 namespace lambent {
 
-/// .exr or .pfm; throws InputError for other names.
+/// An .exr, of `layer` where one is named, or a .pfm. Throws InputError for other names, and above 4096² texels where
+/// the file has fewer bytes than texels.
 Image readLinear(const std::string& file, const std::string& layer = {});
 
 /// Checks before long work that `file` has an extension that can be written, and a folder that takes it.

@@ -232,7 +232,7 @@ void refuseLosses(const RecordOptions& options, const Scene& scene, const fs::pa
 
 void record(const RecordOptions& options) {
   checkOptions(options);
-  const auto opened = openLaunch(options.launch);
+  const auto opened = openLaunch(options.launch, WatchUntil::FirstPicture);
   if (!opened->shot) throw InputError(options.launch.scene, "not a shot (a .json file; lambent render draws scenes)");
   const std::vector<Settings> settings = settingsOf(options, *opened);
   if (!options.beside.empty() && opened->settings.image.adaptation > 0)

@@ -154,7 +154,7 @@ class Recorded {
 };
 
 void soak(const SoakOptions& options) {
-  const auto opened = openAndSay(options.launch, options.output.quiet);
+  const auto opened = openAndSay(options.launch, options.output.quiet, WatchUntil::FirstPicture);
   needPunctualLight(*opened);
   GlContext context = GlContext::headless();
   Viewer gi(opened->settings, opened->seed);

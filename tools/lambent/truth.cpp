@@ -94,7 +94,7 @@ void reference(const ReferenceOptions& options) {
     checkWritable(options.state);
     removeLeftovers(options.state);
   }
-  const auto opened = openAndSay(options.launch, options.output.quiet);
+  const auto opened = openAndSay(options.launch, options.output.quiet, WatchUntil::FirstPicture);
   const Settings& settings = opened->settings;
   checkClamp(options, settings);
   const auto begin = std::chrono::steady_clock::now();

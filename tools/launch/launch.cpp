@@ -174,11 +174,27 @@ void refuseHeavyShot(const Shot& shot, const std::string& file) {
   throw InputError(file, text.str());
 }
 
+/// As chosenSettings, even where they contradict each other; null: without a shot.
+Settings askedSettings(const LaunchOptions& options, const Shot* shot) {
+  Settings settings;
+  if (!options.preset.empty()) applyPreset(settings, options.preset);
+  if (shot) applyShot(settings, *shot);
+  if (!options.technique.empty()) applyTechnique(settings, options.technique);
+  for (const std::string& text : options.set) {
+    const size_t equals = text.find('=');
+    if (equals == std::string::npos) throw InputError("--set " + text, "has no value (name=value)");
+    applySetting(settings, text.substr(0, equals), text.substr(equals + 1));
+  }
+  settings.cubeFile = options.cube;
+  if (options.bounces) applySetting(settings, "smc.bounces", std::to_string(*options.bounces));
+  return settings;
+}
+
 /// What the person asks for beyond a picture of the default size and settings; what a shot asks for is the file's.
 double timesAsked(const LaunchOptions& options, const CameraView& camera) {
   const auto [width, height] = sizeOf(kDefaultSize);
   constexpr double kStored = 5; // times a usual first frame: it casts a cube
-  const Settings asked = chosenSettings(options, {});
+  const Settings asked = askedSettings(options, nullptr);
   const double pixels = double(camera.width) * double(camera.height) / (double(width) * double(height));
   return std::max(1.0, pixels) * std::max(1.0, workOf(asked).times) * (needsOf(asked).stored ? kStored : 1);
 }
@@ -196,17 +212,7 @@ std::pair<int, int> sizeOf(const std::string& text) {
 }
 
 Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot) {
-  Settings settings;
-  if (!options.preset.empty()) applyPreset(settings, options.preset);
-  if (shot) applyShot(settings, *shot);
-  if (!options.technique.empty()) applyTechnique(settings, options.technique);
-  for (const std::string& text : options.set) {
-    const size_t equals = text.find('=');
-    if (equals == std::string::npos) throw InputError("--set " + text, "has no value (name=value)");
-    applySetting(settings, text.substr(0, equals), text.substr(equals + 1));
-  }
-  settings.cubeFile = options.cube;
-  if (options.bounces) applySetting(settings, "smc.bounces", std::to_string(*options.bounces));
+  Settings settings = askedSettings(options, shot ? &*shot : nullptr);
   if (const std::string reason = whyNot(settings); !reason.empty()) throw InputError("settings", reason);
   return settings;
 }
@@ -325,12 +331,13 @@ void chooseUnit(LaunchContext& stage, const LaunchOptions& options) {
   if (stage.unit != 1) rescale(stage.scene, float(stage.unit));
 }
 
-std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options) {
+std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options, WatchUntil until) {
   useThreads(options.threads);
   std::unique_ptr<OpenWatch> watch;
   if (!options.trust.large) watch = std::make_unique<OpenWatch>(options.scene);
   std::unique_ptr<LaunchContext> stage = loadLaunch(options, {});
-  if (watch) watch->opened(timesAsked(options, stage->camera));
+  if (!watch || until == WatchUntil::Opened) return stage;
+  watch->opened(timesAsked(options, stage->camera));
   stage->watch = std::move(watch);
   return stage;
 }
@@ -343,7 +350,7 @@ std::unique_ptr<LaunchContext> loadLaunch(const LaunchOptions& options, const Lo
     if (!options.trust.large) refuseHeavyShot(*stage->shot, options.scene);
     file = stage->shot->scene;
     if (const std::string kind = file.extension().string();
-        kind != ".gltf" && kind != ".glb") // others' files stay shut
+        kind != ".gltf" && kind != ".glb") // a shot may not make us open just any file
       throw InputError(options.scene, "scene: is not a scene's file (.gltf or .glb)");
   }
   const bool oneOfOurs = stage->shot || file.stem() == file.parent_path().filename(); // hall/hall.gltf

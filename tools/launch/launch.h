@@ -48,6 +48,9 @@ void addLaunchOptions(CLI::App& command, LaunchOptions& options);
 /// contradict each other.
 Settings chosenSettings(const LaunchOptions& options, const std::optional<Shot>& shot);
 
+/// Where the watch over a file (engine/core/open_watch.h) ends. FirstPicture: by Viewer's first frame, or traceImage.
+enum class WatchUntil { Opened, FirstPicture };
+
 /// Everything that a frame is made from.
 class LaunchContext {
  public:
@@ -75,8 +78,8 @@ class LaunchContext {
 
 /// Loads and checks everything. A scene without light gets a stated default: a clear sky and its sun, or where none of
 /// the sky reaches a lamp by the camera. Also applies `threads`, to OpenGL on software Mesa too, so call it before a
-/// context is made. Throws InputError.
-std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options);
+/// context is made. Throws InputError. A watch ends the program where the file takes too much until `until`.
+std::unique_ptr<LaunchContext> openLaunch(const LaunchOptions& options, WatchUntil until = WatchUntil::Opened);
 
 /// A note where settings take virtual lights from reflective shadow maps, which see light of some kinds only.
 /// openLaunch does it for the stage's own.

@@ -75,10 +75,15 @@ class PathsAtPoints final : public AtPoints {
     const SceneChanges& c = view.changes;
     if (!values_.empty() && !(c.first || c.camera || c.lights || c.geometry || c.instances)) return stats_;
     RayCounts counts;
-    const std::vector<PixelSums> sums = sampleSurfaces(
-        watched_.surfaces(),
-        {watched_.rays(), watched_.lights(), view.camera, variant_.settings.smc.bounces, clamp_, variant_.seed},
-        samples_, counts);
+    const std::vector<PixelSums> sums = sampleSurfaces(watched_.surfaces(),
+                                                       {.rays = watched_.rays(),
+                                                        .lights = watched_.lights(),
+                                                        .camera = view.camera,
+                                                        .bounces = variant_.settings.smc.bounces,
+                                                        .clamp = clamp_,
+                                                        .seed = variant_.seed,
+                                                        .blended = view.assets->blends() ? &view : nullptr},
+                                                       samples_, counts);
     const bool direct = watchesDirect(variant_.settings);
     values_.clear();
     for (size_t i = 0; i < sums.size(); ++i)

@@ -89,7 +89,7 @@ TEST(Exr, OfVeryManyChannelsIsRefused) {
   EXPECT_NE(inputErrorOf([&] { readExr(file); }).find("has 1103 channels"), std::string::npos);
 }
 
-/// Half floats are packed to fewer bytes than floats: 8192 x 4096 in 0.2 MB are whole.
+/// Half floats are packed to fewer bytes than floats.
 TEST(Exr, FlatPicturesOfHalfFloatsAreWhole) {
   const TemporaryFolder folder;
   const fs::path file = folder / "flat.exr";

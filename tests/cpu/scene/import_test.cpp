@@ -529,6 +529,16 @@ TEST_F(Import, IndexOfRefractionAndSpecularGiveF0AndWeight) {
                vec2(0.04f, 1));
 }
 
+TEST_F(Import, OcclusionTexturesAreTold) {
+  for (const bool occluded : {false, true}) {
+    GltfBuilder b = oneTriangle();
+    b.json["materials"] = {{{"name", "m"}}};
+    if (occluded) b.json["materials"][0]["occlusionTexture"] = {{"index", 0}};
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    EXPECT_EQ(hasWarning(b.load(folder), "occlusionTexture is not used"), occluded);
+  }
+}
+
 TEST_F(Import, ACoatTakesThePlaceOfTheGlossOfWhatIsNoMetal) {
   const auto materialOf = [&](double metalness, const nlohmann::json& coat) {
     GltfBuilder b = oneTriangle();

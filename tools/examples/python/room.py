@@ -66,7 +66,7 @@ floats, uints = c.POINTER(c.c_float), c.POINTER(c.c_uint32)
 class Material(Struct):
     kind = 2
     _fields_ = [("size", c.c_size_t), ("base_color", vec3), ("base_texture", c.c_uint64), ("emission", vec3),
-                ("emission_texture", c.c_uint64), ("double_sided", c.c_int), ("masked", c.c_int),
+                ("emission_texture", c.c_uint64), ("double_sided", c.c_int), ("alpha_mode", c.c_int32),
                 ("alpha", c.c_float), ("alpha_cutoff", c.c_float), ("base_uv_set", c.c_int32),
                 ("emission_uv_set", c.c_int32), ("base_uv", c.c_float * 6), ("emission_uv", c.c_float * 6),
                 ("back_hidden", c.c_int)]
