@@ -246,6 +246,8 @@ uint32_t importMaterial(Import& import, int index) {
     out.alphaCutoff = float(in.alphaCutoff);
   } else if (in.alphaMode == "BLEND") {
     out.alphaMode = AlphaMode::Blend;
+  } else if (!in.alphaMode.empty() && in.alphaMode != "OPAQUE") {
+    doc.warn(place + ": alphaMode is none of glTF's; taken as opaque");
   }
   bool coated = false;
   if (in.extensions.contains("KHR_materials_unlit")) { // its colour, with no lobe and no bumps

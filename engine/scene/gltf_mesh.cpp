@@ -172,7 +172,13 @@ Vertices readVertices(Import& import, const VertexSource& source, const std::str
   for (vec4& t : v.tangents) t = vec4(unitOr(vec3(t), vec3(0)), t.w < 0 ? -1 : 1);
   replaceNonFinite(v.uv0, vec2(0));
   replaceNonFinite(v.uv1, vec2(0));
-  replaceNonFinite(v.colors, vec4(1));
+  size_t beyond = 0; // of colours
+  for (vec4& c : v.colors) {
+    const vec4 given = c;
+    for (int i = 0; i < 4; ++i) c[i] = c[i] >= 0 ? std::min(c[i], 1.0f) : c[i] < 0 ? 0.0f : 1.0f;
+    beyond += c != given;
+  }
+  if (beyond) import.counted["vertex colour(s) outside of 0..1, held to it"] += beyond;
   v.jointSets = readJoints(import, source, count, place);
   for (size_t t = 0; t < source.targets.size(); ++t) {
     const std::string targetPlace = place + ", morph target " + std::to_string(t);

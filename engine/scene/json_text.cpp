@@ -65,6 +65,7 @@ JsonText checkJson(const std::filesystem::path& file, std::string_view text) {
 }
 
 std::string reasonOf(std::string message) {
+  message = message.substr(0, message.find("; last read")); // what somebody's file holds is nobody's
   const size_t end = message.find("] ");
   return message.starts_with("[json.exception.") && end != message.npos ? message.substr(end + 2) : message;
 }

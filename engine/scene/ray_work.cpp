@@ -274,7 +274,8 @@ RayWork workOf(const Scene& scene, const CameraView& camera, bool surfaces) {
   if (std::ranges::none_of(areas, [](double area) { return area > 0; })) return {}; // nothing for light to fall on
   uint64_t triangles = 0;
   forEachPosed(scene, [&](const Mesh& mesh, const DeformedMesh*, const mat4&) { triangles += mesh.triangles.size(); });
-  const auto wanted = size_t(std::clamp<uint64_t>((uint64_t(1) << 28) / triangles, 64, 256));
+  constexpr uint64_t kFew = 64, kMany = 256; // of other cameras few each, for there are several
+  const auto wanted = size_t(std::clamp((uint64_t(1) << 28) / triangles, kFew, surfaces ? kMany : kFew));
   Rng random(1, Stream::RayWork, 0);
   std::vector<Ray> rays;
   if (surfaces) rays = surfaceRays(scene, areas, wanted, random);

@@ -1,4 +1,5 @@
 // Assets into GPU memory: one vertex and one index buffer for all meshes, one uniform buffer for all materials.
+#include "engine/core/color.h"
 #include "engine/core/error.h"
 #include "engine/gl/pulse.h"
 #include "gi/surfaces/gpu_scene.h"
@@ -10,7 +11,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <set>
 
 namespace lambent {
 
@@ -191,9 +191,60 @@ void keepSlopes(const gl::Texture& texture, const TextureImage& image) {
   }
 }
 
-/// `cutoff`: alpha of it at least passes the test of the material that shows the image; 0: none tests it. `slopes`: a
-/// material has it as its normal map.
-gl::Texture uploadImage(const TextureImage& image, float cutoff, bool slopes) {
+/// Weighs texels by their alpha in the colours of coarser levels: else those of what is not there show around what is.
+void keepColours(const gl::Texture& texture, const TextureImage& image) {
+  constexpr float kSteps = 4095;
+  static const auto linear = [] {
+    std::array<float, 256> table;
+    for (size_t i = 0; i < table.size(); ++i) table[i] = linearFromSrgb(float(i) / 255);
+    return table;
+  }();
+  static const auto encoded = [] { // of roots
+    std::array<uint8_t, size_t(kSteps) + 1> table;
+    for (size_t i = 0; i < table.size(); ++i)
+      table[i] = uint8_t(std::lround(255 * srgbFromLinear(float(i * i) / (kSteps * kSteps))));
+    return table;
+  }();
+  const auto decode = [&](uint8_t c) { return image.srgb ? linear[c] : float(c) / 255; };
+  const auto encode = [&](float c) {
+    return image.srgb ? encoded[size_t(std::sqrt(std::min(c, 1.0f)) * kSteps + 0.5f)]
+                      : uint8_t(std::min(c, 1.0f) * 255 + 0.5f);
+  };
+  std::vector<vec4> sums; // of a level: colour times alpha, and alpha
+  std::vector<u8vec4> texels;
+  for (int level = 1, width = image.width, height = image.height; width > 1 || height > 1; ++level) {
+    const size_t right = width > 1, row = size_t(width), down = height > 1 ? row : 0, step = 1 + right;
+    const size_t rows = height > 1 ? 2 * row : row;
+    width = std::max(1, width / 2), height = std::max(1, height / 2);
+    texels.resize(size_t(width) * size_t(height));
+    if (level == 1) sums.resize(texels.size());
+    const auto at = [&](size_t i) {
+      if (level > 1) return sums[i];
+      const u8vec4& t = image.texels[i];
+      return vec4(decode(t.x), decode(t.y), decode(t.z), 1) * (float(t.w) / 255);
+    };
+    gl::pulse();
+    texture.read(std::span(texels), GL_RGBA, GL_UNSIGNED_BYTE, level);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) {
+        const size_t from = size_t(y) * rows + size_t(x) * step, to = size_t(y) * size_t(width) + size_t(x);
+        const vec4 sum = at(from) + at(from + right) + at(from + down) + at(from + down + right);
+        sums[to] = 0.25f * sum;
+        if (sum.w > 0)
+          for (int c = 0; c < 3; ++c) texels[to][c] = encode(sum[c] / sum.w);
+      }
+    glTextureSubImage2D(texture.name(), level, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+  }
+}
+
+/// What materials make of an image.
+struct ImageUse {
+  bool slopes = false; // one has it as its normal map
+  bool shares = false; // one is masked or blended by its alpha
+  float cutoff = 0;    // alpha of it at least passes the test of one; 0: none tests it
+};
+
+gl::Texture uploadImage(const TextureImage& image, const ImageUse& use) {
   gl::pulse();
   const int levels = int(std::bit_width(unsigned(std::max(image.width, image.height))));
   gl::Texture texture("scene/" + image.name.substr(0, 100), {.format = GLenum(image.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8),
@@ -204,9 +255,10 @@ gl::Texture uploadImage(const TextureImage& image, float cutoff, bool slopes) {
   glTextureSubImage2D(texture.name(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE,
                       image.texels.data());
   glGenerateTextureMipmap(texture.name());
-  if (cutoff > 0 && cutoff <= 1)
-    keepCoverage(texture, image, cutoff);
-  else if (slopes)
+  if (use.shares && image.least.w < 255) keepColours(texture, image);
+  if (use.cutoff > 0 && use.cutoff <= 1)
+    keepCoverage(texture, image, use.cutoff);
+  else if (use.slopes)
     keepSlopes(texture, image);
   return texture;
 }
@@ -324,19 +376,19 @@ uint32_t GpuScene::samplerFor(const TextureRef& ref) {
 }
 
 void GpuScene::uploadMaterials(const SceneAssets& assets) {
-  std::map<uint32_t, float> cutoffs; // of images, for an alpha of the file's own
-  std::set<uint32_t> normalMaps;
+  std::map<uint32_t, ImageUse> uses;
   for (const Material& m : assets.materials) {
-    if (m.alphaMode == AlphaMode::Mask && m.alpha > 0)
-      cutoffs.emplace(m.baseColorTexture.image, m.alphaCutoff / m.alpha);
-    normalMaps.insert(m.normalTexture.image);
+    ImageUse& base = uses[m.baseColorTexture.image];
+    base.shares |= m.alphaMode != AlphaMode::Opaque;
+    if (m.alphaMode == AlphaMode::Mask && m.alpha > 0 && base.cutoff == 0)
+      base.cutoff = m.alphaCutoff / m.alpha; // for an alpha of the file's own
+    uses[m.normalTexture.image].slopes = true;
   }
   for (size_t i = 0; i < assets.images.size(); ++i) {
     const TextureImage& image = assets.images[i];
     const bool gone = image.texels.empty();
     if (i == textures_.size()) {
-      const auto index = uint32_t(i);
-      textures_.push_back(gone ? gl::Texture() : uploadImage(image, cutoffs[index], normalMaps.contains(index)));
+      textures_.push_back(gone ? gl::Texture() : uploadImage(image, uses[uint32_t(i)]));
     }
     if (gone) textures_[i] = {};
   }

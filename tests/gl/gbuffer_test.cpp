@@ -270,6 +270,36 @@ TEST_F(GBufferTest, MasksOfRegularPatternsKeepTheirCoverageFarAway) {
   }
 }
 
+/// Nor does the colour of what is not there: texels between leaves are black as a rule.
+TEST_F(GBufferTest, ColoursOfWhatIsCutOutDoNotShowFarAway) {
+  std::vector<u8vec4> texels;
+  Rng rng(1, Stream::Test, 0);
+  for (int i = 0; i < 128 * 128; ++i)
+    texels.push_back(rng.next() < 0.3f ? u8vec4(250, 120, 60, 255) : u8vec4(0, 0, 0, 0));
+  for (const AlphaMode mode : {AlphaMode::Mask, AlphaMode::Blend})
+    for (const bool srgb : {true, false}) {
+      HandScene scene;
+      const uint32_t leaves = scene.material(vec3(1));
+      Material& m = scene.assets.materials[leaves];
+      m.baseColorTexture = scene.texture(128, texels, srgb);
+      m.baseColorTexture.nearest = false;
+      m.baseColorTexture.uvTransform = mat3(4, 0, 0, 0, 4, 0, 0, 0, 1);
+      m.alphaMode = mode;
+      scene.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, leaves);
+      scene.camera = cameraAt({0, 0, 12}, vec3(0), 1.0f);
+      const GBuffer frame = surfaces(scene);
+      const Image depth = surfaceBuffer(Buffer::Depth, frame), albedo = surfaceBuffer(Buffer::Albedo, frame);
+      const vec3 expected = vec3(decodeTexel({250, 120, 60, 255}, srgb));
+      int seen = 0;
+      for (size_t i = 0; i < depth.pixels.size(); ++i) {
+        if (depth.pixels[i].x == 0) continue;
+        ++seen;
+        EXPECT_LT(glm::length(albedo.pixels[i] - expected), 0.06f) << int(mode) << srgb << ' ' << i;
+      }
+      EXPECT_GT(seen, 100);
+    }
+}
+
 TEST_F(GBufferTest, TexturesMasksAndVertexColours) {
   HandScene scene;
   const TextureRef picture = scene.texture(2, {{188, 0, 0, 255}, {0, 188, 0, 0}}); // red and opaque; green, transparent

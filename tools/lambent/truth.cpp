@@ -165,9 +165,14 @@ void compare(const CompareOptions& options) {
             Value::of("rmse", e.rmse, "rel_mse", e.relMse, "bias", e.bias, "max", e.largest, "mean_b", e.meanTruth,
                       "pixels", e.pixels, "not_finite_pixels", e.notFinite));
   const auto refuse = [&] { // figures of the others are right, but this is no picture to be content with
-    if (e.notFinite > 0)
-      throw RunError(options.a + " or " + options.b + ": " + std::to_string(e.notFinite) +
-                     " pixels are NaN or infinite");
+    if (e.notFinite == 0) return;
+    const auto finite = [](const Image& image) {
+      return std::ranges::all_of(image.pixels, [](const vec3& p) { return isFinite(p); });
+    };
+    throw RunError((finite(x)   ? options.b
+                    : finite(y) ? options.a
+                                : options.a + " and " + options.b) +
+                   ": " + std::to_string(e.notFinite) + " pixels are NaN or infinite (--mask leaves them out)");
   };
   if (options.output.quiet || e.pixels == 0) return refuse();
   std::printf("RMSE    %.6g\nrelMSE  %.6g\n", e.rmse, e.relMse);

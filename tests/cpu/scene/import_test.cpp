@@ -133,6 +133,37 @@ TEST_F(Import, NormalisedAndPlainIntegersAreConverted) {
   EXPECT_FLOAT_EQ(m.colors[0].w, 1);
 }
 
+TEST_F(Import, VertexColoursAreHeldToWhatGltfAllows) {
+  GltfBuilder b;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const int colors = b.floats({2, 0.5f, -1, 50, 0.25f, nan, 1, -3, 0, 1, 0.5f, 0.75f}, "VEC4");
+  b.addMeshNode({{"attributes", {{"POSITION", b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})}, {"COLOR_0", colors}}}});
+  const Scene scene = b.load(folder);
+  const std::vector<vec4>& held = scene.assets.meshes.at(0).colors;
+  EXPECT_EQ(held.at(0), vec4(1, 0.5f, 0, 1));
+  EXPECT_EQ(held.at(1), vec4(0.25f, 1, 1, 0));
+  EXPECT_EQ(held.at(2), vec4(0, 1, 0.5f, 0.75f));
+  EXPECT_TRUE(hasWarning(scene, "2 vertex colour(s) outside of 0..1"));
+}
+
+TEST_F(Import, AlphaModesOfNoKindAreTold) {
+  for (const char* mode : {"OPAQUE", "MASK", "BLEND", "BLURB"}) {
+    GltfBuilder b = oneTriangle();
+    b.json["materials"] = {{{"alphaMode", mode}}};
+    b.json["meshes"][0]["primitives"][0]["material"] = 0;
+    EXPECT_EQ(hasWarning(b.load(folder), "alphaMode is none of glTF's"), std::string(mode) == "BLURB") << mode;
+  }
+}
+
+/// A file that a stranger's file names may be a person's own.
+TEST_F(Import, MessagesDoNotQuoteWhatAFileHolds) {
+  writeBytes(folder / "other.gltf", R"({"a":"hunter2 password
+)");
+  const std::string message = inputErrorOf([&] { loadScene(folder / "other.gltf"); });
+  EXPECT_NE(message.find("line 2"), std::string::npos) << message;
+  EXPECT_EQ(message.find("hunter2"), std::string::npos) << message;
+}
+
 TEST_F(Import, PrimitivesShareVerticesAndFillUpMissingAttributes) {
   GltfBuilder b;
   const int positions = b.positions(kSquare), normals = b.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
