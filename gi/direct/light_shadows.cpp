@@ -203,7 +203,8 @@ void LightShadowState::fill(size_t& block, MapKind kind, int resolution, const s
       target.still = {};
     }
     target.kind = kind;
-    const DrawKind depth = in.shadow.rays && kind != MapKind::Sky ? DrawKind::CheckeredDepth : DrawKind::Depth;
+    const bool checkered = in.scene.blends() && in.shadow.rays && kind != MapKind::Sky;
+    const DrawKind depth = checkered ? DrawKind::CheckeredDepth : DrawKind::Depth;
     if (std::exchange(target.depth, depth) != depth) {
       std::ranges::fill(target.drawn, mat4(0));
       target.stillDrawn.assign(target.stillDrawn.size(), {});
