@@ -80,7 +80,9 @@ struct EmbreeQuery::State {
   };
 
   bool traces(const Ray& r) const {
-    return traceable(r) && maxComponent(glm::abs(r.origin)) * growth <= kFarthestInEmbree;
+    const float farthest = kFarthestInEmbree / growth; // what is not finite is farther, too
+    return std::abs(r.origin.x) <= farthest && std::abs(r.origin.y) <= farthest && std::abs(r.origin.z) <= farthest &&
+           isFinite(r.direction) && r.tMax > 0;
   }
 
   const SceneAssets& assets;
@@ -364,10 +366,12 @@ void EmbreeQuery::distances(std::span<const Ray> rays, std::span<float> t) const
       packet.ray.tnear[j] = packet.ray.time[j] = 0;
       packet.ray.tfar[j] = ray.tMax;
       packet.ray.mask[j] = ~0u;
-      packet.ray.id[j] = keyOf(ray, state_->blends);
+      packet.ray.id[j] = ray.key;
       packet.ray.flags[j] = 0;
       packet.hit.geomID[j] = packet.hit.instID[0][j] = RTC_INVALID_GEOMETRY_ID;
     }
+    if (state_->blends)
+      for (size_t j = 0; j < count; ++j) packet.ray.id[j] = keyOf(rays[first + j], true);
     intersect16(valid.data(), state_->top, arguments, &packet);
     for (size_t j = 0; j < count; ++j)
       t[first + j] = valid[j] && packet.hit.geomID[j] != RTC_INVALID_GEOMETRY_ID ? packet.ray.tfar[j] : kInfinity;

@@ -80,8 +80,12 @@ std::vector<uint16_t> castMap(const ParaboloidMapInputs& in, const MapPose& pose
         for (int x = bx; x < std::min(bx + block, texels.x1); x += step) {
           const vec3 d = directionFromParaboloid((vec2(x, y) + 0.5f) / float(n));
           if (d.z < -2.0f * float(step) / float(n)) continue; // as map_resample.frag
-          const uint32_t key = !in.checkered ? 0 : (x / step + y / step) % 2 ? kMeetsAll : kMeetsNone;
-          rays.push_back({origin, worldFromLight * d, in.farDistance, key});
+          Ray& ray =
+              rays.emplace_back(); // made elsewhere and copied, each waits for its own stores: a third of all here
+          ray.origin = origin;
+          ray.direction = worldFromLight * d;
+          ray.tMax = in.farDistance;
+          if (in.checkered) ray.key = (x / step + y / step) % 2 ? kMeetsAll : kMeetsNone;
           texelOfRay.push_back(uint32_t((y - texels.y0) * width + x - texels.x0));
         }
   std::vector<float> met(rays.size());
