@@ -79,6 +79,7 @@ void GpuRays::bind(const gl::Program& program) const {
     buffer->bindStorage(binding++);
   program.set("topNodeCount", int(scene_.top().size()));
   program.set("testAlpha", alphaTest_ != AlphaTest::None ? 1 : 0);
+  program.set("blendedFrom", blendedFrom());
 }
 
 /// What rays.comp says of each ray. Those that are not to be traced are sent nowhere.

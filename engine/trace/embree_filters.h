@@ -34,6 +34,7 @@ void beginContext(EmbreeContext& c) { rtcInitIntersectContext(&c); }
 struct QueryContext {
   EmbreeContext embree;
   float* passes = nullptr; // of one ray: multiplied by what blended surfaces let through, which then stop nothing
+  float from = 0;          // of a ray, in units of its direction: what blends is not met before
   QueryContext() { beginContext(embree); }
 };
 
@@ -47,11 +48,16 @@ void alphaFilter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] != -1) continue;
     ++alphaTests;
     if (material.alphaMode == AlphaMode::Opaque) continue;
+    const QueryContext& context = *reinterpret_cast<const QueryContext*>(args->context);
+    if (material.blends() && RTCRayN_tfar(args->ray, args->N, i) < context.from) {
+      args->valid[i] = 0;
+      continue;
+    }
     const vec2 barycentric(RTCHitN_u(args->hit, args->N, i), RTCHitN_v(args->hit, args->N, i));
     const TrianglePlace place = trianglePlace(mesh, primitive, RTCHitN_primID(args->hit, args->N, i), barycentric);
     const float alpha = alphaAt(*data.assets, mesh, material, place);
-    if (float* passes = reinterpret_cast<const QueryContext*>(args->context)->passes; passes && material.blends()) {
-      *passes *= 1 - shareThere(material, alpha);
+    if (context.passes && material.blends()) {
+      *context.passes *= 1 - shareThere(material, alpha);
       args->valid[i] = 0;
       continue;
     }

@@ -328,6 +328,7 @@ void EmbreeQuery::trace(std::span<const Ray> rays, std::span<SurfaceHit> hits, b
     RTCRayHit rh;
     fillRay(rh.ray, rays[i], s.blends);
     rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    if (s.blends && !eye) arguments.context.from = blendedFrom() / glm::length(rays[i].direction);
     intersect1(s.top, arguments, &rh);
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
 
@@ -370,8 +371,10 @@ void EmbreeQuery::distances(std::span<const Ray> rays, std::span<float> t) const
       packet.ray.flags[j] = 0;
       packet.hit.geomID[j] = packet.hit.instID[0][j] = RTC_INVALID_GEOMETRY_ID;
     }
-    if (state_->blends)
+    if (state_->blends) {
       for (size_t j = 0; j < count; ++j) packet.ray.id[j] = keyOf(rays[first + j], true);
+      arguments.context.from = blendedFrom() / glm::length(rays[first].direction); // all are of one length
+    }
     intersect16(valid.data(), state_->top, arguments, &packet);
     for (size_t j = 0; j < count; ++j)
       t[first + j] = valid[j] && packet.hit.geomID[j] != RTC_INVALID_GEOMETRY_ID ? packet.ray.tfar[j] : kInfinity;
@@ -387,6 +390,7 @@ void EmbreeQuery::occluded(std::span<const Ray> rays, std::span<uint8_t> blocked
     if (!state_->traces(rays[i])) continue;
     RTCRay ray;
     fillRay(ray, rays[i], state_->blends);
+    if (state_->blends) arguments.context.from = blendedFrom() / glm::length(rays[i].direction);
     occluded1(state_->top, arguments, &ray);
     blocked[i] = ray.tfar < 0;
   }
@@ -401,6 +405,7 @@ void EmbreeQuery::transmittance(std::span<const Ray> rays, std::span<float> pass
     passes[i] = 1;
     if (!state_->traces(rays[i])) continue;
     arguments.context.passes = &passes[i];
+    arguments.context.from = blendedFrom() / glm::length(rays[i].direction);
     RTCRay ray;
     fillRay(ray, rays[i], false);
     occluded1(state_->top, arguments, &ray);

@@ -92,6 +92,9 @@ class RayQuery {
   /// Metres by which hits may lie off their surfaces, whatever their own coordinates: those of the geometry's corners
   /// round off. Stays the same while the scene does.
   float rayEpsilon() const { return rayEpsilon_; }
+  /// Metres from its start within which a ray passes what blends, but for those of eyes: a decal does not shade what it
+  /// lies on, which is seen through the same holes as light comes by. 1 cm in a room of 10 m around its origin.
+  float blendedFrom() const { return 1024 * rayEpsilon_; }
 
  protected:
   /// Finds the rayEpsilon of a scene of triangles by the bounds of the first view that has any.

@@ -13,6 +13,7 @@ layout(std430, binding = 5) restrict readonly buffer RayMasks { RayMask rayMasks
 layout(std430, binding = 6) restrict readonly buffer RayTexels { uint rayTexels[]; };
 uniform int topNodeCount;
 uniform int testAlpha; // 0: masks count as solid
+uniform float blendedFrom; // metres from a ray's start within which it passes what blends (RayQuery)
 
 struct RayHit {
   float t; // in units of the direction; infinite: nothing met
@@ -40,7 +41,8 @@ float rayTexelCoordinate(float uv, int size, uint wrap) {
   return (wrap == 2u ? clamp(uv, -1.0, 2.0) : uv - 2.0 * floor(0.5 * uv)) * float(size);
 }
 
-bool cutOut(RayMask mask, vec2 barycentric, uint key, uint instance) {
+/// `blends`: whether what blends is met.
+bool cutOut(RayMask mask, vec2 barycentric, uint key, uint instance, bool blends) {
   vec3 at = mask.corners[0].xyz * (1.0 - barycentric.x - barycentric.y) + mask.corners[1].xyz * barycentric.x +
             mask.corners[2].xyz * barycentric.y;
   float alpha = at.z;
@@ -56,7 +58,7 @@ bool cutOut(RayMask mask, vec2 barycentric, uint key, uint instance) {
                    mix(rayTexel(mask, i.x, i.y + 1), rayTexel(mask, i.x + 1, i.y + 1), f.x), f.y);
     }
   }
-  if (mask.corners[0].w < 0.0) return !isCovered(alpha, key, instance, uint(mask.corners[1].w));
+  if (mask.corners[0].w < 0.0) return !blends || !isCovered(alpha, key, instance, uint(mask.corners[1].w));
   return alpha < mask.corners[0].w;
 }
 
@@ -78,7 +80,7 @@ bool meetsBox(vec3 lo, vec3 hi, vec3 origin, vec3 inverse, float tMax) {
 vec3 rayTurned(vec3 v, int axis) { return axis == 0 ? v.yzx : axis == 1 ? v.zxy : v; }
 
 /// Where a triangle is met nearer than `hit`, it becomes the hit.
-void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, uint key, uint instance, inout RayHit hit,
+void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, uint key, float from, uint instance, inout RayHit hit,
                   inout bool met) {
   RayTriangle triangle = rayTriangles[index];
   vec3 a = rayTurned(triangle.p0 - origin, axis), b = rayTurned(triangle.p1 - origin, axis),
@@ -91,7 +93,8 @@ void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, uint key, uint 
   float t = shear.z * (u * a.z + v * b.z + w * c.z) / sum;
   if (!(t > 0.0 && t <= hit.t)) return;
   vec2 barycentric = vec2(v, w) / sum;
-  if (testAlpha != 0 && triangle.mask != kRayNone && cutOut(rayMasks[triangle.mask], barycentric, key, instance))
+  if (testAlpha != 0 && triangle.mask != kRayNone &&
+      cutOut(rayMasks[triangle.mask], barycentric, key, instance, t >= from))
     return;
   hit.t = t;
   hit.triangle = triangle.triangle;
@@ -103,6 +106,7 @@ void meetTriangle(uint index, vec3 origin, vec3 shear, int axis, uint key, uint 
 /// `key`: of chances of meeting what is blended; 0: by the ray itself.
 RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any, uint key) {
   if (key == 0u) key = rayKey(origin, direction);
+  float from = blendedFrom / length(direction);
   RayHit hit = RayHit(tMax, kRayNone, 0u, vec2(0.0));
   vec3 inverse = rayInverse(direction);
   bool done = false;
@@ -133,7 +137,7 @@ RayHit rayHit(vec3 origin, vec3 direction, float tMax, bool any, uint key) {
       ++at;
       uint first = instance.firstTriangle + (node.leaf >> 3);
       for (uint k = 0u; k < (node.leaf & 7u); ++k)
-        meetTriangle(first + k, o, shear, axis, key, instance.instance, hit, met);
+        meetTriangle(first + k, o, shear, axis, key, from, instance.instance, hit, met);
       done = any && met;
     }
     if (met) hit.instance = instance.instance;

@@ -203,6 +203,26 @@ TEST_F(BlendingTest, LampsThatGlowShineThroughPanesAndAsPanes) {
   EXPECT_NEAR(half / truth(), 0.5, 0.01);
 }
 
+/// What is seen of a floor beside a decal is seen by the holes that light comes by.
+TEST_F(BlendingTest, DecalsDoNotShadeWhatTheyLieOn) {
+  for (const int kind : {0, 1, 2}) {
+    const auto lit = [&](bool decal) {
+      HandScene scene;
+      scene.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, scene.material(vec3(0.5f)));
+      if (decal) scene.quad({-3, 0.001f, -3}, {0, 0, 6}, {6, 0, 0}, blended(scene, 0.6f, vec3(0.5f)));
+      if (kind == 0)
+        scene.lights.push_back({.type = LightType::Directional, .direction = {0.3f, -1, 0}, .intensity = vec3(3)});
+      else if (kind == 1)
+        scene.lamp({0, 2, 0}, vec3(10));
+      else
+        scene.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, scene.material(vec3(0), vec3(4)));
+      scene.camera = cameraAt({0, 1.5f, 1}, {0, 0, 0}, 0.9f, 64, 48);
+      return meanLuminance(firstFrame(Settings(), scene.view(), Buffer::Direct));
+    };
+    EXPECT_NEAR(lit(true) / lit(false), 1, 0.01) << kind;
+  }
+}
+
 /// Where a texture of alpha is minified, pixels and rays meet other surfaces: light is of those that pixels show.
 TEST_F(BlendingTest, SoftLightIsOfTheSurfaceThatAPixelShows) {
   HandScene scene;
@@ -282,6 +302,15 @@ TEST_F(BlendingTest, RaysPassByChance) {
       rays.push_back({{at.x, 1, at.y}, {0, -1, 0}, kInfinity, own ? rng.nextUint() >> 1 | 1 : 0});
     }
     const Answers byEmbree(embree, rays), byGpu(gpu, rays);
+    for (const bool near : {false, true}) { // decals that rays begin on are passed
+      std::vector<Ray> close = rays;
+      for (Ray& r : close) r.origin.y = near ? 1e-4f : 1e-2f;
+      double byBoth = 0;
+      for (const u8vec4& t : texels)
+        byBoth += std::pow(1 - double(shareCovered(0.8f * float(t.w) / 255)), near ? 1 : 2) / double(texels.size());
+      EXPECT_NEAR(double(Answers(embree, close).free()) / kRays, byBoth, 0.01) << near;
+      EXPECT_NEAR(double(Answers(gpu, close).free()) / kRays, byBoth, 0.01) << near;
+    }
     const double sigma = std::sqrt(left * (1 - left) / kRays);
     EXPECT_NEAR(double(byEmbree.free()) / kRays, left, 4 * sigma) << own;
     EXPECT_NEAR(double(byGpu.free()) / kRays, left, 4 * sigma) << own;
