@@ -117,6 +117,7 @@ TEST_F(Library, BlendedLetsItsShareOfLightPass) {
   const std::vector<float> normals = Room::read(f.normal, GL_RGB);
   struct Light {
     double floor = 0, all = 0, indirect = 0; // direct light of the floor and of everything, indirect light
+    float asked[3] = {};                     // direct light at a point of the floor
   };
   const auto light = [&](lambent_material pane, std::vector<float> corners) {
     lambent_instance instance = 0;
@@ -138,6 +139,8 @@ TEST_F(Library, BlendedLetsItsShareOfLightPass) {
     for (int i = 0; i < 4; ++i) out = room.render(fresh, f);
     const std::vector<float> direct = Room::read(out.direct, GL_RGB);
     Light sum{0, Room::mean(direct), Room::mean(Room::read(out.indirect, GL_RGB))};
+    const float point[] = {0.3f, -0.99f, 0.5f}, up[] = {0, 1, 0};
+    room.ok(lambent_irradiance(room.device, fresh, point, up, 1, nullptr, sum.asked));
     for (size_t i = 0; i < direct.size(); ++i)
       if (normals[i / 3 * 3 + 1] > 0.9f) sum.floor += double(direct[i]);
     if (pane) room.ok(lambent_instance_destroy(room.device, room.scene, instance));
@@ -152,8 +155,9 @@ TEST_F(Library, BlendedLetsItsShareOfLightPass) {
   m.alpha = 0.75f;
   lambent_material pane = 0;
   room.ok(lambent_material_create(room.device, room.scene, &m, &pane));
-  EXPECT_NEAR(light(pane, {-1, 0.3f, -1, 1, 0.3f, -1, 1, 0.3f, 1, -1, 0.3f, 1}).floor / open.floor, 0.25, 0.01)
-      << "below the lamp";
+  const Light below = light(pane, {-1, 0.3f, -1, 1, 0.3f, -1, 1, 0.3f, 1, -1, 0.3f, 1});
+  EXPECT_NEAR(below.floor / open.floor, 0.25, 0.01) << "below the lamp";
+  EXPECT_NEAR(below.asked[0] / open.asked[0], 0.25, 0.01) << "at a point";
   m.alpha = 0.98f;
   room.ok(lambent_material_set(room.device, room.scene, pane, &m));
   const Light before = light(pane, {-1, -1, 0.8f, 1, -1, 0.8f, 1, 1, 0.8f, -1, 1, 0.8f});
