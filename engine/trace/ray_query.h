@@ -93,8 +93,8 @@ class RayQuery {
   /// round off. Stays the same while the scene does.
   float rayEpsilon() const { return rayEpsilon_; }
   /// Metres from its start within which a ray passes what blends, but for those of eyes: a decal does not shade what it
-  /// lies on, which is seen through the same holes as light comes by. 1 cm in a room of 10 m around its origin.
-  float blendedFrom() const { return 1024 * rayEpsilon_; }
+  /// lies on, which is seen through the same holes as light comes by. 1 cm in a room of 10 m, 2 cm at most.
+  float blendedFrom() const { return glm::min(1024 * rayEpsilon_, 0.02f); }
 
  protected:
   /// Finds the rayEpsilon of a scene of triangles by the bounds of the first view that has any.
