@@ -348,9 +348,11 @@ void PipelineState::apply() const {
   glDepthMask(depthWrite ? GL_TRUE : GL_FALSE);
   glDepthFunc(depthFunc);
   set(GL_DEPTH_CLAMP, depthClamp);
-  set(GL_BLEND, add || blendAlpha);
+  set(GL_BLEND, add || blendAlpha || multiply);
   if (add)
     glBlendFunc(GL_ONE, GL_ONE);
+  else if (multiply)
+    glBlendFunc(GL_ZERO, GL_SRC_COLOR);
   else
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDisable(GL_CULL_FACE);

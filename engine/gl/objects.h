@@ -212,6 +212,7 @@ struct PipelineState {
   GLenum depthFunc = GL_GREATER;
   bool add = false;        // destination + source
   bool blendAlpha = false; // source over
+  bool multiply = false;   // destination × source
   Stencil stencil = Stencil::Off;
   bool colors = true;                      // off: fragments are counted, or write to buffers
   bool depthClamp = false;                 // casters outside the depth range are kept at its ends

@@ -23,7 +23,9 @@ struct GBuffer {
   const gl::Texture* finish = nullptr;
   /// RGBA16F as `normal`, by normal maps: of light, never of places; null: the same.
   const gl::Texture* mappedNormal = nullptr;
-  const gl::Texture* blended = nullptr;    // R8: 1 where a blended surface is, seen or not; null: nowhere
+  /// RG16: the share that blended surfaces let through, and 1 where what is behind them is shown, 0 where one of them
+  /// is; null: there are none.
+  const gl::Texture* blended = nullptr;
   const gl::BufferSlice* camera = nullptr; // uniform block CameraBlock (shaders/shared/camera_block.h)
   CameraBlock block;                       // what `camera` holds
   int width = 0, height = 0;

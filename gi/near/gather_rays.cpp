@@ -14,7 +14,7 @@ float geometryTerm(float cosReceiver, float cosVpl, float distance2, float area,
 }
 
 std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points,
-                                   const SceneView* normalMaps, std::optional<uint32_t> key) {
+                                   const SceneView* normalMaps, std::span<const uint32_t> keys) {
   std::vector<Ray> block;
   const vec3 forward = -vec3(camera.worldFromView[2]);
   for (const vec2& p : points) {
@@ -22,7 +22,7 @@ std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camer
     const ivec2 pixel(vec2(p.x, 1 - p.y) * vec2(camera.width, camera.height)); // from the bottom
     const uint32_t own = camera.throughBlended ? kMeetsNone : pixelKey(uint32_t(pixel.x), uint32_t(pixel.y));
     block.push_back({r.origin + r.direction * (camera.near / glm::dot(r.direction, forward)), r.direction, kInfinity,
-                     key.value_or(own)});
+                     keys.empty() ? own : keys[block.size()]});
   }
   std::vector<SurfaceHit> hits(block.size());
   rays.seen(block, hits);

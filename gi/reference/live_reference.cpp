@@ -76,6 +76,7 @@ class LiveReference::Tracing {
             .glossy = task_->paths.glossy ? &view : nullptr,
             .normalMaps = task_->paths.normalMaps ? &view : nullptr,
             .blended = view.assets->blends() ? &view : nullptr,
+            .mixes = task_->paths.mixes,
             .stopped = &stopped_};
   }
 
@@ -101,7 +102,8 @@ LiveReference::~LiveReference() {
 }
 
 std::string LiveReference::follow(const SceneView& view, const Settings& settings, ReferenceBuffer buffer) {
-  const Paths paths{settings.smc.bounces, tracesGlossy(view, settings, buffer), tracesNormalMaps(view, settings)};
+  const Paths paths{settings.smc.bounces, tracesGlossy(view, settings, buffer), tracesNormalMaps(view, settings),
+                    mixesBlended(view, buffer)};
   std::string why = followed_ ? whatChanged(view.changes) : "it begins";
   if (why.empty() && followed_->bounces != paths.bounces) why = "smc.bounces changed";
   if (why.empty() && *followed_ != paths) why = "surfaces reflect in another way";

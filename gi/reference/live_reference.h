@@ -44,7 +44,7 @@ class LiveReference {
   /// What samples depend on, apart from the view.
   struct Paths {
     int bounces = 0;
-    bool glossy = false, normalMaps = false;
+    bool glossy = false, normalMaps = false, mixes = false;
     bool operator==(const Paths&) const = default;
   };
   struct Task {

@@ -11,6 +11,7 @@
 #include "shaders/shared/coverage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lambent {
@@ -19,20 +20,23 @@ namespace {
 
 constexpr size_t kBlockPixels = 16; // small images still keep all threads busy
 
-/// Surfaces at the centres of pixels [begin, end); `key` as surfacesAt.
+/// Surfaces at the centres of pixels [begin, end).
 std::vector<SurfaceHit> primaryHits(const ReferenceInputs& in, size_t begin, size_t end,
-                                    std::optional<uint32_t> key = {}) {
+                                    std::span<const uint32_t> keys = {}) {
   const CameraView& camera = in.camera;
   std::vector<vec2> centres;
   for (size_t i = begin; i < end; ++i) centres.push_back(pixelCentre(camera, i));
-  return surfacesAt(in.rays, camera, centres, in.normalMaps, key);
+  return surfacesAt(in.rays, camera, centres, in.normalMaps, keys);
 }
 
-/// Which of the pixels [begin, end) blended surfaces lie in: those that blend.frag mixes.
-std::vector<uint8_t> blendedAt(const ReferenceInputs& in, size_t begin, size_t end) {
-  std::vector<uint8_t> out;
-  for (const SurfaceHit& h : primaryHits(in, begin, end, kMeetsAll)) {
-    out.push_back(0);
+/// Which of the pixels [begin, end) show blended surfaces, before what else they show.
+std::vector<uint8_t> mixedAt(const ReferenceInputs& in, size_t begin, size_t end) {
+  std::vector<uint8_t> out(end - begin);
+  if (!in.mixes) return out;
+  const std::vector<uint32_t> all(out.size(), kMeetsAll);
+  const std::vector<SurfaceHit> nearest = primaryHits(in, begin, end, all);
+  for (size_t i = 0; i < out.size(); ++i) {
+    const SurfaceHit& h = nearest[i];
     if (!h.valid()) continue;
     const SceneAssets& assets = *in.blended->assets;
     const Mesh& mesh = assets.meshes[in.blended->instances[h.instance].mesh];
@@ -40,30 +44,18 @@ std::vector<uint8_t> blendedAt(const ReferenceInputs& in, size_t begin, size_t e
     const Material& material = assets.materials[primitive.material];
     if (material.alphaMode != AlphaMode::Blend) continue;
     const TrianglePlace place = trianglePlace(mesh, primitive, h.triangle, h.barycentric);
-    out.back() = alphaAt(assets, mesh, material, place) < 1 - kLeastBlended;
+    out[i] = alphaAt(assets, mesh, material, place) < 1 - kLeastBlended;
   }
   return out;
 }
 
-/// As blend.frag.
-Image mixed(const Image& image, const std::vector<uint8_t>& blended) {
-  Image out = image;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      if (!blended[size_t(y) * size_t(image.width) + size_t(x)]) continue;
-      vec3 sum(0);
-      float weights = 0;
-      for (int j = std::max(0, y - kMixReach); j <= std::min(image.height - 1, y + kMixReach); ++j)
-        for (int i = std::max(0, x - kMixReach); i <= std::min(image.width - 1, x + kMixReach); ++i)
-          if (blended[size_t(j) * size_t(image.width) + size_t(i)]) {
-            const float weight = mixWeight(vec2(i - x, j - y));
-            sum += weight * image.at(i, j);
-            weights += weight;
-          }
-      out.at(x, y) = sum / weights;
-    }
-  return out;
+vec3 skyAt(const ReferenceInputs& in, size_t pixel) {
+  const vec2 at = pixelCentre(in.camera, pixel);
+  return in.lights.sky.radiance(cameraRay(in.camera, at.x, at.y).direction);
 }
+
+/// Of chances of meeting what is blended.
+uint32_t keyFrom(Rng& rng) { return rng.nextUint() >> 1 | 1; }
 
 /// One path's present vertex. `weight` turns irradiance/π here into irradiance/π at the primary hit.
 struct Path {
@@ -79,12 +71,13 @@ struct Sample {
 
 class BlockTracer {
  public:
-  BlockTracer(const ReferenceInputs& in, size_t firstPixel, std::span<const SurfaceHit> primary)
-      : in_(in), firstPixel_(firstPixel), primary_(primary), samples_(primary.size()) {
-    if (!in.glossy) return;
-    receivers_.resize(primary.size());
-    for (size_t i = 0; i < primary.size(); ++i)
-      if (primary[i].valid()) receivers_[i] = receiverOf(*in.glossy, primary[i]);
+  /// `mixed`: which draw their surface anew in each sample; empty: none.
+  BlockTracer(const ReferenceInputs& in, size_t firstPixel, std::span<const SurfaceHit> primary,
+              std::vector<uint8_t> mixed = {})
+      : in_(in), firstPixel_(firstPixel), primary_(primary.begin(), primary.end()), mixed_(std::move(mixed)),
+        samples_(primary.size()) {
+    if (in.glossy) receivers_.resize(primary.size());
+    for (size_t i = 0; i < primary.size(); ++i) findReceiver(i);
   }
 
   /// Sample number `index` of every pixel of the block; valid until the next call.
@@ -92,12 +85,15 @@ class BlockTracer {
     std::fill(samples_.begin(), samples_.end(), Sample{});
     paths_.clear();
     for (uint32_t i = 0; i < primary_.size(); ++i) {
+      Rng rng(in_.seed, Stream::Reference, uint32_t(firstPixel_ + i), index);
+      const bool mixed = isMixed(i);
+      if (mixed) drawSurface(i, rng, counts);
       const SurfaceHit& h = primary_[i];
       if (h.valid())
         paths_.push_back({{h.position, h.normal, h.geometricNormal, receivers_.empty() ? nullptr : &receivers_[i]},
-                          vec3(1),
+                          mixed && receivers_.empty() ? h.albedo : vec3(1),
                           i,
-                          Rng(in_.seed, Stream::Reference, uint32_t(firstPixel_ + i), index)});
+                          rng});
     }
     const bool raysMeetLight = !in_.lights.emitters.empty() || !in_.lights.sky.black() ||
                                (in_.bounces == 0 && in_.glossy && std::ranges::any_of(in_.lights.punctual, hasDisk));
@@ -107,10 +103,25 @@ class BlockTracer {
       // The last vertex needs its cosine ray only to meet sky and emitters.
       if (vertex < in_.bounces || raysMeetLight) extend(vertex, counts);
     }
+    for (uint32_t i = 0; i < primary_.size(); ++i)
+      if (isMixed(i)) samples_[i].direct += primary_[i].valid() ? primary_[i].emission : skyAt(in_, firstPixel_ + i);
     return samples_;
   }
 
  private:
+  bool isMixed(uint32_t pixel) const { return !mixed_.empty() && mixed_[pixel]; }
+
+  void drawSurface(uint32_t pixel, Rng& rng, RayCounts& counts) {
+    const size_t i = firstPixel_ + pixel;
+    primary_[pixel] = primaryHits(in_, i, i + 1, std::array{keyFrom(rng)})[0];
+    ++counts.closest;
+    findReceiver(pixel);
+  }
+
+  void findReceiver(size_t pixel) {
+    if (in_.glossy && primary_[pixel].valid()) receivers_[pixel] = receiverOf(*in_.glossy, primary_[pixel]);
+  }
+
   vec3& sumOf(const Path& path, int vertex) {
     Sample& s = samples_[path.pixel];
     return vertex == 0 ? s.direct : s.indirect;
@@ -141,7 +152,7 @@ class BlockTracer {
       LightConnection c = connection(p);
       if (glossyAt(vertex)) c.value *= kPi * reflectanceOf(receivers_[p.pixel], glm::normalize(c.segment.direction));
       if (maxComponent(c.value) <= 0) continue;
-      if (in_.blended) c.segment.key = keyFor(p);
+      if (in_.blended) c.segment.key = keyFrom(p.rng);
       segments_.push_back(c.segment);
       pending_.push_back(c.value);
       owners_.push_back(i);
@@ -161,7 +172,7 @@ class BlockTracer {
       // Under the real surface of a smooth-shaded one: the path ends, as a ray of length zero.
       const bool above = glm::dot(direction, p.vertex.geometricNormal) > 0;
       segments_.push_back({offsetPoint(p.vertex.position, p.vertex.geometricNormal, in_.rays.rayEpsilon()), direction,
-                           above ? kInfinity : 0.0f, in_.blended ? keyFor(p) : 0});
+                           above ? kInfinity : 0.0f, in_.blended ? keyFrom(p.rng) : 0});
     }
     hits_.resize(segments_.size());
     in_.rays.closest(segments_, hits_);
@@ -185,8 +196,6 @@ class BlockTracer {
     }
     paths_.erase(paths_.begin() + long(alive), paths_.end());
   }
-
-  static uint32_t keyFor(Path& p) { return p.rng.nextUint() >> 1 | 1; }
 
   bool glossyAt(int vertex) const { return vertex == 0 && !receivers_.empty(); }
 
@@ -212,7 +221,8 @@ class BlockTracer {
 
   const ReferenceInputs& in_;
   const size_t firstPixel_;
-  const std::span<const SurfaceHit> primary_;
+  std::vector<SurfaceHit> primary_;
+  const std::vector<uint8_t> mixed_;
   std::vector<Sample> samples_;
   std::vector<Receiver> receivers_; // by pixel; empty: Lambert
   std::vector<Path> paths_;
@@ -257,7 +267,7 @@ void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, 
     if (in.stopped && *in.stopped) return;
     const std::vector<SurfaceHit> primary = primaryHits(in, begin, end);
     ofBlock.closest += primary.size();
-    BlockTracer tracer(in, begin, primary);
+    BlockTracer tracer(in, begin, primary, mixedAt(in, begin, end));
     for (uint32_t s = 0; s < count; ++s) {
       const std::span<const Sample> samples = tracer.trace(sums.samples + s, ofBlock);
       for (size_t i = begin; i < end; ++i) addTo(sums.pixels[i], samples[i - begin]);
@@ -282,7 +292,7 @@ std::vector<PixelSums> sampleSurfaces(std::span<const SurfaceHit> surfaces, cons
 
 ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer) {
   const bool irradiance = buffer == ReferenceBuffer::Irradiance;
-  CHECK(!(irradiance && in.glossy));
+  CHECK(!(irradiance && (in.glossy || in.mixes)));
   ReferenceImage image{Image(sums.width, sums.height), Image(sums.width, sums.height), {}};
   image.surface.resize(sums.pixels.size());
   const bool direct = buffer == ReferenceBuffer::Beauty || buffer == ReferenceBuffer::Direct;
@@ -291,19 +301,19 @@ ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& i
     glm::dvec3 total{0}, variance{0};
   };
   std::vector<Row> rows(size_t(sums.height));
-  const bool mixes = in.blended && buffer == ReferenceBuffer::Beauty;
-  std::vector<uint8_t> blended(mixes ? sums.pixels.size() : 0);
   parallelFor(rows.size(), 1, [&](size_t firstRow, size_t lastRow) {
-    if (mixes)
-      std::ranges::copy(blendedAt(in, firstRow * sums.width, lastRow * sums.width),
-                        blended.begin() + long(firstRow * sums.width));
-    for (size_t i = firstRow * sums.width; i < lastRow * sums.width; ++i) {
-      const SurfaceHit h = primaryHits(in, i, i + 1)[0];
+    const size_t first = firstRow * sums.width;
+    const std::vector<uint8_t> mixed = mixedAt(in, first, lastRow * sums.width);
+    for (size_t i = first; i < lastRow * sums.width; ++i) {
+      SurfaceHit h;
+      if (!mixed[i - first]) h = primaryHits(in, i, i + 1)[0];
       Row& row = rows[i / sums.width];
       vec3& mean = image.mean.pixels[i];
-      image.surface[i] = h.valid();
-      if (h.valid()) {
-        const vec3 factor = irradiance ? vec3(kPi) : in.glossy ? vec3(1) : h.albedo;
+      const bool seen = mixed[i - first] || h.valid();
+      image.surface[i] = seen;
+      if (seen) {
+        const bool reflected = in.glossy || mixed[i - first];
+        const vec3 factor = irradiance ? vec3(kPi) : reflected ? vec3(1) : h.albedo;
         for (int c = 0; c < 3; ++c) {
           const Estimate e = estimateOf(sums.pixels[i], c, sums.samples, direct, indirect);
           mean[c] = (direct ? h.emission[c] : 0) + factor[c] * float(e.mean);
@@ -312,13 +322,11 @@ ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& i
           row.variance[c] += variance;
         }
       } else if (direct) {
-        const vec2 at = (vec2(i % sums.width, i / sums.width) + 0.5f) / vec2(sums.width, sums.height);
-        mean = in.lights.sky.radiance(cameraRay(in.camera, at.x, at.y).direction);
+        mean = skyAt(in, i);
       }
       row.total += glm::dvec3(mean);
     }
   });
-  if (mixes) image.mean = mixed(image.mean, blended);
   glm::dvec3 total(0), variance(0);
   for (const Row& r : rows) total += r.total, variance += r.variance;
   const double count = 3 * double(sums.pixels.size()), sum = total.x + total.y + total.z;

@@ -24,15 +24,19 @@ struct ReferenceInputs {
   /// Lambert.
   const SceneView* glossy = nullptr;
   const SceneView* normalMaps = nullptr; // primary hits have the normals of this view's maps; null: the meshes' own
-  /// The view, where it has blended materials: each sample meets them by a chance of its own, and Beauty is mixed as
-  /// blend.frag does (its errors are those of pixels before). Null: rays' own bits decide.
+  /// The view, where it has blended materials: each sample meets them by a chance of its own. Null: rays' own bits
+  /// decide.
   const SceneView* blended = nullptr;
+  /// So do the rays of pixels that show blended surfaces. Their sums hold the radiance that is seen, and do not give
+  /// irradiance.
+  bool mixes = false;
   /// Another thread sets it to make addSamples return soon; what was added is then part of a pass and of no use.
   const std::atomic<bool>* stopped = nullptr;
 };
 
 /// Sums over the samples of one pixel. `direct` and `indirect` are irradiance/π: what a white surface would reflect;
-/// with ReferenceInputs::glossy the radiance that the surface does reflect.
+/// with ReferenceInputs::glossy the radiance that the surface does reflect; where ReferenceInputs::mixes applies the
+/// radiance that is seen, `direct` with emission and sky.
 struct PixelSums {
   glm::dvec3 direct{0}, directSquares{0};
   glm::dvec3 indirect{0}, indirectSquares{0};
@@ -72,7 +76,7 @@ struct ReferenceImage {
   /// Standard error of the image's mean over that mean, as if a pixel's channels were fully correlated (else less).
   double relativeErrorOfMean = 0;
 };
-/// Reads a buffer from the sums. Glossy sums do not give irradiance.
+/// Reads a buffer from the sums. Those of glossy and mixed pixels do not give irradiance.
 ReferenceImage readReference(const ReferenceSums& sums, const ReferenceInputs& in, ReferenceBuffer buffer);
 
 } // namespace lambent

@@ -63,6 +63,7 @@ uint64_t referenceKey(const SceneView& view, const ReferenceInputs& in) {
   hash.value(in.seed);
   if (in.glossy) hash.value(true);
   if (in.normalMaps) hash.value('n');
+  if (in.mixes) hash.value('m');
   return hash.result();
 }
 

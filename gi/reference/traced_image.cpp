@@ -73,6 +73,10 @@ bool tracesGlossy(const SceneView& view, const Settings& settings, ReferenceBuff
          std::ranges::any_of(view.assets->materials, &Material::glossy);
 }
 
+bool mixesBlended(const SceneView& view, ReferenceBuffer buffer) {
+  return buffer != ReferenceBuffer::Irradiance && view.assets && view.assets->blends() && !view.camera.throughBlended;
+}
+
 bool tracesNormalMaps(const SceneView& view, const Settings& settings) {
   return settings.effects[EffectId::NormalMaps] != EffectMode::Off && view.assets &&
          std::ranges::any_of(view.assets->materials, [](const Material& m) { return m.normalTexture.image != kNone; });
@@ -91,6 +95,7 @@ TracedImage traceImage(const SceneView& view, const Settings& settings, const Tr
                            .glossy = tracesGlossy(view, settings, plan.buffer) ? &view : nullptr,
                            .normalMaps = tracesNormalMaps(view, settings) ? &view : nullptr,
                            .blended = view.assets->blends() ? &view : nullptr,
+                           .mixes = mixesBlended(view, plan.buffer),
                            .stopped = plan.stopped};
   TracedImage out{.bounces = in.bounces, .clamp = in.clamp};
   OpenWatch::end(); // paths take what they are asked for

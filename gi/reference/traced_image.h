@@ -37,6 +37,9 @@ struct TracedImage {
 /// which does not depend on how it is reflected.
 bool tracesGlossy(const SceneView& view, const Settings& settings, ReferenceBuffer buffer);
 
+/// Says whether samples mix what blended surfaces show; irradiance is of one surface, drawn by the pixel.
+bool mixesBlended(const SceneView& view, ReferenceBuffer buffer);
+
 /// Says whether the truth has the normals of normal maps where the camera looks.
 bool tracesNormalMaps(const SceneView& view, const Settings& settings);
 

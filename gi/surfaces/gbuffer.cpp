@@ -114,19 +114,22 @@ GBuffer SurfacePass::run(const SurfaceInputs& in) {
   return out;
 }
 
-/// Where blended surfaces lie before what the pixels show, or are that.
+/// What blended surfaces let through of what is behind all of them, whichever a pixel shows.
 void SurfacePass::drawBlended(const SurfaceInputs& in) {
   const int width = depth_.width(), height = depth_.height();
-  if (!blended_ || blended_.width() != width || blended_.height() != height || blendedDepth_ != depth_.name()) {
-    blended_ = gl::Texture("g-buffer/blended", {.format = GL_R8, .width = width, .height = height});
-    blendedFramebuffer_ = gl::Framebuffer("g-buffer/blended", {&blended_}, &depth_);
-    blendedDepth_ = depth_.name();
+  if (!blended_ || blended_.width() != width || blended_.height() != height) {
+    blended_ = gl::Texture("g-buffer/blended", {.format = GL_RG16, .width = width, .height = height});
+    solidDepth_ =
+        gl::Texture("g-buffer/solid depth", {.format = GL_DEPTH_COMPONENT32F, .width = width, .height = height});
+    blendedFramebuffer_ = gl::Framebuffer("g-buffer/blended", {&blended_}, &solidDepth_);
   }
   blendedFramebuffer_.bind();
-  gl::PipelineState{.depthTest = true, .depthWrite = false, .depthFunc = GL_GEQUAL, .width = width, .height = height}
-      .apply();
-  const float zero[4] = {0, 0, 0, 0};
-  glClearNamedFramebufferfv(blendedFramebuffer_.name(), GL_COLOR, 0, zero);
+  const float zero = 0, one[4] = {1, 1, 1, 1};
+  gl::PipelineState{.depthTest = true, .depthWrite = true, .colors = false, .width = width, .height = height}.apply();
+  glClearNamedFramebufferfv(blendedFramebuffer_.name(), GL_DEPTH, 0, &zero);
+  in.scene.drawSeen(DrawKind::SolidDepth, block_.clipFromWorld, in.camera.position());
+  gl::PipelineState{.depthTest = true, .multiply = true, .width = width, .height = height}.apply();
+  glClearNamedFramebufferfv(blendedFramebuffer_.name(), GL_COLOR, 0, one);
   in.scene.drawSeen(DrawKind::Blended, block_.clipFromWorld, in.camera.position());
 }
 

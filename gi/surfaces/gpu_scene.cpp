@@ -108,7 +108,9 @@ namespace {
 
 /// Whether it shows materials, and not only where their masks are cut out.
 bool showsMaterials(DrawKind kind) { return kind <= DrawKind::GlossyMappedGBuffer; }
-bool isDepth(DrawKind kind) { return kind == DrawKind::Depth || kind == DrawKind::CheckeredDepth; }
+bool isDepth(DrawKind kind) {
+  return kind == DrawKind::Depth || kind == DrawKind::CheckeredDepth || kind == DrawKind::SolidDepth;
+}
 bool showsFinish(DrawKind kind) { return kind == DrawKind::GlossyGBuffer || kind == DrawKind::GlossyMappedGBuffer; }
 bool showsNormalMaps(DrawKind kind) { return kind == DrawKind::MappedGBuffer || kind == DrawKind::GlossyMappedGBuffer; }
 
@@ -123,7 +125,9 @@ const gl::Program& GpuScene::programFor(DrawKind kind, const MaterialDraw& mater
   if (!shows) desc.defines.push_back("DEPTH_ONLY");
   if (kind == DrawKind::DistanceNormal) desc.defines.push_back("POSITION");
   if (material.alphaMode == AlphaMode::Blend && tested(material))
-    desc.defines.push_back(kind == DrawKind::CheckeredDepth ? "CHECKERED" : "ALPHA_BLEND");
+    desc.defines.push_back(kind == DrawKind::CheckeredDepth ? "CHECKERED"
+                           : kind == DrawKind::SolidDepth   ? "SOLID"
+                                                            : "ALPHA_BLEND");
   if (tested(material))
     desc.defines.push_back("ALPHA_MASK");
   else if (shows && context_.drawnByCpu)

@@ -27,7 +27,8 @@ struct Frustum {
 
 /// What a draw writes: the G-buffer, the same with roughness and metalness, with mapped normals, or both; distance
 /// (metres) and geometric normal of what the eye sees; depth alone; depth for maps that ask rays where their texels
-/// differ, with blended surfaces in every other texel; or where blended materials are, and nothing else.
+/// differ, with blended surfaces in every other texel; depth without what blended surfaces let be seen; or what those
+/// let through, and nothing else.
 enum class DrawKind {
   GBuffer,
   GlossyGBuffer,
@@ -36,6 +37,7 @@ enum class DrawKind {
   DistanceNormal,
   Depth,
   CheckeredDepth,
+  SolidDepth,
   Blended
 };
 inline DrawKind gBufferWith(bool glossy, bool mapped) { return DrawKind(int(glossy) + 2 * int(mapped)); }

@@ -48,9 +48,8 @@ class SurfacePass {
   gl::Texture black_;    // emission of a host that has none
   gl::Sampler plain_;    // a host's texture may want mipmaps that it does not have
   gl::Framebuffer framebuffer_;
-  gl::Texture blended_;
+  gl::Texture blended_, solidDepth_; // the depth of what is behind blended surfaces
   gl::Framebuffer blendedFramebuffer_;
-  GLuint blendedDepth_ = 0; // the depth that it is made with
   gl::Ring cameras_{"g-buffer/camera"};
   gl::BufferSlice camera_; // of the last run
   gl::Texture depthBefore_, normalBefore_;

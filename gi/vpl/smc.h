@@ -246,10 +246,10 @@ std::vector<vec3> gatherByRays(const RayQuery& rays, const CameraView& camera, s
                                const SceneView* normalMaps = nullptr);
 
 /// What the camera sees at points (u, v) of its image, v down, in [0, 1]. Rays start at the near plane, as the
-/// rasteriser's, and meet of blended surfaces those that it shows there; or have all the key that is given
+/// rasteriser's, and meet of blended surfaces those that it shows there; or those of the points' keys, where given
 /// (shaders/shared/coverage.h).
 std::vector<SurfaceHit> surfacesAt(const RayQuery& rays, const CameraView& camera, std::span<const vec2> points,
-                                   const SceneView* normalMaps = nullptr, std::optional<uint32_t> key = {});
+                                   const SceneView* normalMaps = nullptr, std::span<const uint32_t> keys = {});
 
 /// Computes irradiance at surfaces from all lights, a ray for every pair; zero where there is no surface.
 std::vector<vec3> irradianceByRays(const RayQuery& rays, std::span<const SurfaceHit> surfaces,

@@ -27,7 +27,7 @@ vec4 baseColorAt(vec4 uv01, vec4 vertexColor) {
 }
 
 #ifdef ALPHA_MASK
-#if defined(ALPHA_BLEND) || defined(CHECKERED)
+#if defined(ALPHA_BLEND) || defined(CHECKERED) || defined(SOLID)
 #include "shared/coverage.h"
 #endif
 #ifdef ALPHA_BLEND
@@ -40,6 +40,8 @@ bool isCutOut(float alpha) {
 #elif defined(CHECKERED)
   bool other = (int(gl_FragCoord.x) + int(gl_FragCoord.y)) % 2 == 0;
   return alpha <= kLeastBlended || (alpha < 1.0 - kLeastBlended && other);
+#elif defined(SOLID)
+  return alpha < 1.0 - kLeastBlended;
 #else
   return alpha < material.emission.a;
 #endif

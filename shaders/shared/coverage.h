@@ -1,13 +1,12 @@
 // Alpha blending as chance: a surface of alpha a is there for a share a of pixels and rays, and not for the others.
-// Each pixel so has one surface, which light, histories and the reference treat as any; blend.frag mixes them for the
-// eye (stochastic transparency, Enderton et al. 2010).
+// Each pixel so has one surface, which light and histories treat as any; blend.frag mixes them for the eye (stochastic
+// transparency, Enderton et al. 2010). The reference draws anew in each sample.
 #pragma once
 #include "interop.h"
 #ifdef __cplusplus
 #include <glm/glm.hpp>
 namespace lambent {
 using glm::floatBitsToUint;
-using glm::vec2;
 } // namespace lambent
 #endif
 SHARED_BEGIN
@@ -74,13 +73,6 @@ SHARED_INLINE bool isCovered(float alpha, uint key, uint instance, uint triangle
     chance += x * steps.x + y * steps.y;
   }
   return alpha > float(chance >> 8) * (1.0f / 16777216.0f);
-}
-
-/// Weight of a neighbour, `offset` pixels away, in the mix of a pixel where blended surfaces are.
-const int kMixReach = 2;
-SHARED_INLINE float mixWeight(vec2 offset) {
-  vec2 tent = vec2(3.0f) - abs(offset);
-  return tent.x * tent.y;
 }
 
 SHARED_END
