@@ -11,7 +11,6 @@
 #include "shaders/shared/coverage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace lambent {
@@ -84,10 +83,11 @@ class BlockTracer {
   std::span<const Sample> trace(uint32_t index, RayCounts& counts) {
     std::fill(samples_.begin(), samples_.end(), Sample{});
     paths_.clear();
+    drawSurfaces(index, counts);
     for (uint32_t i = 0; i < primary_.size(); ++i) {
-      Rng rng(in_.seed, Stream::Reference, uint32_t(firstPixel_ + i), index);
+      Rng rng = rngOf(i, index);
       const bool mixed = isMixed(i);
-      if (mixed) drawSurface(i, rng, counts);
+      if (mixed) keyFrom(rng); // its surface is drawn by it
       const SurfaceHit& h = primary_[i];
       if (h.valid())
         paths_.push_back({{h.position, h.normal, h.geometricNormal, receivers_.empty() ? nullptr : &receivers_[i]},
@@ -111,11 +111,27 @@ class BlockTracer {
  private:
   bool isMixed(uint32_t pixel) const { return !mixed_.empty() && mixed_[pixel]; }
 
-  void drawSurface(uint32_t pixel, Rng& rng, RayCounts& counts) {
-    const size_t i = firstPixel_ + pixel;
-    primary_[pixel] = primaryHits(in_, i, i + 1, std::array{keyFrom(rng)})[0];
-    ++counts.closest;
-    findReceiver(pixel);
+  Rng rngOf(size_t pixel, uint32_t index) const {
+    return Rng(in_.seed, Stream::Reference, uint32_t(firstPixel_ + pixel), index);
+  }
+
+  void drawSurfaces(uint32_t index, RayCounts& counts) {
+    if (std::ranges::find(mixed_, 1) == mixed_.end()) return;
+    std::vector<vec2> centres;
+    std::vector<uint32_t> keys;
+    for (size_t i = 0; i < mixed_.size(); ++i) {
+      if (!mixed_[i]) continue;
+      Rng rng = rngOf(i, index);
+      centres.push_back(pixelCentre(in_.camera, firstPixel_ + i));
+      keys.push_back(keyFrom(rng));
+    }
+    const std::vector<SurfaceHit> drawn = surfacesAt(in_.rays, in_.camera, centres, in_.normalMaps, keys);
+    counts.closest += drawn.size();
+    for (size_t i = 0, next = 0; i < mixed_.size(); ++i) {
+      if (!mixed_[i]) continue;
+      primary_[i] = drawn[next++];
+      findReceiver(i);
+    }
   }
 
   void findReceiver(size_t pixel) {
@@ -266,7 +282,7 @@ void addSamples(ReferenceSums& sums, const ReferenceInputs& in, uint32_t count, 
   parallelCount(pixels, kBlockPixels, counts, [&](size_t begin, size_t end, RayCounts& ofBlock) {
     if (in.stopped && *in.stopped) return;
     const std::vector<SurfaceHit> primary = primaryHits(in, begin, end);
-    ofBlock.closest += primary.size();
+    ofBlock.closest += in.mixes ? 2 * primary.size() : primary.size();
     BlockTracer tracer(in, begin, primary, mixedAt(in, begin, end));
     for (uint32_t s = 0; s < count; ++s) {
       const std::span<const Sample> samples = tracer.trace(sums.samples + s, ofBlock);

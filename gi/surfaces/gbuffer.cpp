@@ -128,7 +128,8 @@ void SurfacePass::drawBlended(const SurfaceInputs& in) {
   gl::PipelineState{.depthTest = true, .depthWrite = true, .colors = false, .width = width, .height = height}.apply();
   glClearNamedFramebufferfv(blendedFramebuffer_.name(), GL_DEPTH, 0, &zero);
   in.scene.drawSeen(DrawKind::SolidDepth, block_.clipFromWorld, in.camera.position());
-  gl::PipelineState{.depthTest = true, .multiply = true, .width = width, .height = height}.apply();
+  gl::PipelineState{.depthTest = true, .depthFunc = GL_GEQUAL, .multiply = true, .width = width, .height = height}
+      .apply();
   glClearNamedFramebufferfv(blendedFramebuffer_.name(), GL_COLOR, 0, one);
   in.scene.drawSeen(DrawKind::Blended, block_.clipFromWorld, in.camera.position());
 }

@@ -170,7 +170,8 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   // call per vertex array.
   const bool shows = showsMaterials(kind);
   const auto plain = [&](const Item& item) { return !shows && !tested(materialDraws_[item.range.material]); };
-  const auto place = [&](const Item* item) { return plain(*item) ? int(item->deformed) : 2; };
+  const auto culls = [&](const Item& item) { return seen && materialDraws_[item.range.material].backHidden; };
+  const auto place = [&](const Item* item) { return plain(*item) ? int(item->deformed) + 2 * int(culls(*item)) : 4; };
   if (!shows)
     std::stable_sort(shown.begin(), shown.end(), [&](const Item* a, const Item* b) { return place(a) < place(b); });
 
@@ -188,10 +189,10 @@ uint32_t GpuScene::draw(DrawKind kind, const mat4& clipFromWorld, const vec3& ey
   for (size_t first = 0, end = 0; first < shown.size(); first = end) {
     const Item& item = *shown[first];
     const MaterialDraw& material = materialDraws_[item.range.material];
-    const bool anyMaterial = plain(item), culled = seen && material.backHidden;
+    const bool anyMaterial = plain(item), culled = culls(item);
     const auto sameRun = [&](const Item& other) {
       return other.deformed == item.deformed && plain(other) == anyMaterial &&
-             (anyMaterial || other.range.material == item.range.material) &&
+             (anyMaterial || other.range.material == item.range.material) && culls(other) == culled &&
              (!culled || other.mirrored == item.mirrored);
     };
     for (end = first + 1; end < shown.size() && sameRun(*shown[end]);) ++end;

@@ -27,7 +27,7 @@ struct Frustum {
 
 /// What a draw writes: the G-buffer, the same with roughness and metalness, with mapped normals, or both; distance
 /// (metres) and geometric normal of what the eye sees; depth alone; depth for maps that ask rays where their texels
-/// differ, with blended surfaces in every other texel; depth without what blended surfaces let be seen; or what those
+/// differ, with blended surfaces in every other texel; depth of what is solid, blended surfaces left out; or what those
 /// let through, and nothing else.
 enum class DrawKind {
   GBuffer,
@@ -64,7 +64,7 @@ class GpuScene {
                 const mat3& wayFromPixel = mat3(1)) const {
     return draw(kind, clipFromWorld, eye, which, wayFromPixel, false);
   }
-  /// Draws a G-buffer of what an eye sees: without the backs of materials that hide theirs, as RayQuery::seen.
+  /// Draws what an eye sees: without the backs of materials that hide theirs, as RayQuery::seen.
   uint32_t drawSeen(DrawKind kind, const mat4& clipFromWorld, const vec3& eye) const {
     return draw(kind, clipFromWorld, eye, Instances::All, mat3(1), true);
   }

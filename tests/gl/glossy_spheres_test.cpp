@@ -82,6 +82,7 @@ class GlossySpheresTest : public GlTest {
       wanted[hit.instance] += double(luminance(truth.at(x, y)));
       ++pixels[hit.instance];
     }
+    EXPECT_GT(std::ranges::max(pixels), 300) << "one is seen";
     for (size_t i = 0; i < 10; ++i) {
       if (pixels[i] == 0) continue;
       std::printf("%s, roughness %.2f, metalness %zu: %.4f of the reference\n", name, double(kRoughnesses[i % 5]),
