@@ -29,6 +29,7 @@ struct RenderOptions {
   OutputOptions output;
   std::string buffer = "beauty";
   std::optional<int> frames; // none: as many as light is averaged over
+  double time = 0;           // seconds
 };
 
 /// What brought the indirect light of a frame that was drawn.
@@ -55,7 +56,7 @@ void render(const RenderOptions& options) {
   FrameStats drawn; // of the last frame that was: once the lights have settled the picture stays
   int frames = options.frames.value_or(1);
   for (int i = 0; i < frames; ++i) {
-    stats = &gi.run(opened->at(0), [&](int done, int total) {
+    stats = &gi.run(opened->at(options.time), [&](int done, int total) {
       if (i == 0) progress->update(done, total);
       if (interrupted) throw RunError("interrupted");
     });
@@ -247,6 +248,7 @@ void declareRender(CLI::App& app) {
   command.number(
       "--frames", &options->frames, 1, 1000000,
       "frames up to the picture (default: as many as its light is averaged over: history.frames, direct.frames)");
+  command.number("--time", &options->time, 0, 0, "seconds into the shot or the scene's animation, which stands there");
   command.run([options] { render(*options); });
 }
 
