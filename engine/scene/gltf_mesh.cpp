@@ -56,10 +56,15 @@ int find(const std::map<std::string, int>& attributes, const std::string& name) 
   return found == attributes.end() ? -1 : found->second;
 }
 
-template <class V> void replaceNonFinite(std::vector<V>& values, const V& replacement) {
-  for (V& v : values)
-    for (int c = 0; c < V::length(); ++c)
-      if (!std::isfinite(v[c])) v = replacement;
+/// Returns how many it replaced.
+template <class V> size_t replaceNonFinite(std::vector<V>& values, const V& replacement) {
+  size_t replaced = 0;
+  for (V& v : values) {
+    bool finite = true;
+    for (int c = 0; c < V::length(); ++c) finite = finite && std::isfinite(v[c]);
+    if (!finite) v = replacement, ++replaced;
+  }
+  return replaced;
 }
 
 std::vector<vec4> readColors(const Document& doc, int accessor, const std::string& place) {
@@ -170,8 +175,8 @@ Vertices readVertices(Import& import, const VertexSource& source, const std::str
   }
   v.tangents = readOptional<vec4>(doc, source.tangents, count, place + ", TANGENT");
   for (vec4& t : v.tangents) t = vec4(unitOr(vec3(t), vec3(0)), t.w < 0 ? -1 : 1);
-  replaceNonFinite(v.uv0, vec2(0));
-  replaceNonFinite(v.uv1, vec2(0));
+  if (const size_t replaced = replaceNonFinite(v.uv0, vec2(0)) + replaceNonFinite(v.uv1, vec2(0)))
+    import.counted["texture coordinate(s) that are not finite numbers, taken for 0"] += replaced;
   size_t beyond = 0; // of colours
   for (vec4& c : v.colors) {
     const vec4 given = c;
@@ -185,8 +190,8 @@ Vertices readVertices(Import& import, const VertexSource& source, const std::str
     MorphTarget& target = v.targets.emplace_back();
     target.positions = readOptional<vec3>(doc, source.targets[t].positions, count, targetPlace + ", POSITION");
     target.normals = readOptional<vec3>(doc, source.targets[t].normals, count, targetPlace + ", NORMAL");
-    replaceNonFinite(target.positions, vec3(0));
-    replaceNonFinite(target.normals, vec3(0));
+    if (const size_t replaced = replaceNonFinite(target.positions, vec3(0)) + replaceNonFinite(target.normals, vec3(0)))
+      import.counted["offset(s) of morph targets that are not finite numbers, taken for 0"] += replaced;
   }
   return v;
 }

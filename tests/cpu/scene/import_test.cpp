@@ -146,6 +146,21 @@ TEST_F(Import, VertexColoursAreHeldToWhatGltfAllows) {
   EXPECT_TRUE(hasWarning(scene, "2 vertex colour(s) outside of 0..1"));
 }
 
+TEST_F(Import, NumbersThatAreNoneAreTold) {
+  GltfBuilder b;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const int triangle = b.positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  const int uvs = b.floats({0.5f, 0.25f, nan, 1, 1, kInfinity}, "VEC2"), offsets = b.positions({{0, 0, 1}, {}, {}});
+  const int broken = b.floats({0, nan, 0, 0, 0, 2, 0, 0, 0}, "VEC3");
+  b.addMeshNode({{"attributes", {{"POSITION", triangle}, {"NORMAL", offsets}, {"TEXCOORD_0", uvs}}},
+                 {"targets", {{{"POSITION", broken}}}}});
+  const Scene scene = b.load(folder);
+  const Mesh& mesh = scene.assets.meshes.at(0);
+  EXPECT_EQ(mesh.uv0, (std::vector<vec2>{{0.5f, 0.25f}, {0, 0}, {0, 0}}));
+  EXPECT_TRUE(hasWarning(scene, "2 texture coordinate(s) that are not finite numbers, taken for 0"));
+  EXPECT_TRUE(hasWarning(scene, "1 offset(s) of morph targets that are not finite numbers, taken for 0"));
+}
+
 TEST_F(Import, AlphaModesOfNoKindAreTold) {
   for (const char* mode : {"OPAQUE", "MASK", "BLEND", "BLURB"}) {
     GltfBuilder b = oneTriangle();
