@@ -67,15 +67,24 @@ TEST(BlendedReference, ReflectedLightIsMixedByAlpha) {
     scene.quad({-4, 0, -4}, {8, 0, 0}, {0, 4, 0}, scene.material(vec3(0.7f))); // lit, and not seen
     scene.lamp({0, 2, -1}, vec3(20));
     scene.camera = cameraAt({0, 2, 0.5f}, vec3(0), 0.6f, 24, 16);
-    return meanOf(traced(scene, 1024, buffer, glossy, 1).mean).mean;
+    return traced(scene, 1024, buffer, glossy, 1);
   };
   for (const bool glossy : {false, true})
     for (const ReferenceBuffer buffer : {ReferenceBuffer::Beauty, ReferenceBuffer::Direct, ReferenceBuffer::Indirect}) {
-      const double decal = floorOf({}, {0.8f, 0.2f, 0.5f}, buffer, glossy);
-      const double below = floorOf({}, {0.1f, 0.6f, 0.3f}, buffer, glossy);
-      const double both = floorOf(kAlpha, {0.1f, 0.6f, 0.3f}, buffer, glossy);
-      EXPECT_GT(std::abs(decal - below), 0.1 * below);
-      EXPECT_NEAR(both / double(glm::mix(below, decal, double(kAlpha))), 1, 0.01) << glossy << ' ' << int(buffer);
+      const ReferenceImage decal = floorOf({}, {0.8f, 0.2f, 0.5f}, buffer, glossy);
+      const ReferenceImage below = floorOf({}, {0.1f, 0.6f, 0.3f}, buffer, glossy);
+      const ReferenceImage both = floorOf(kAlpha, {0.1f, 0.6f, 0.3f}, buffer, glossy);
+      const auto mean = [](const ReferenceImage& image) { return meanOf(image.mean).mean; };
+      EXPECT_GT(std::abs(mean(decal) - mean(below)), 0.1 * mean(below));
+      EXPECT_NEAR(mean(both) / glm::mix(mean(below), mean(decal), double(kAlpha)), 1, 0.01) << glossy << int(buffer);
+      double squares = 0; // of differences, over their variance
+      for (const auto [x, y] : Pixels(both.mean)) {
+        const auto at = [&](const Image& of) { return of.at(x, y).x; };
+        const float wanted = glm::mix(at(below.mean), at(decal.mean), kAlpha);
+        const vec3 errors(at(both.error), kAlpha * at(decal.error), (1 - kAlpha) * at(below.error));
+        squares += std::pow(double(at(both.mean) - wanted), 2) / double(glm::dot(errors, errors));
+      }
+      EXPECT_LT(squares / double(both.mean.pixels.size()), 2) << "each pixel shows both: " << glossy << int(buffer);
     }
 }
 
