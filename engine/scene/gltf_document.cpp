@@ -68,6 +68,8 @@ Container checkContainer(const fs::path& file, const std::vector<uint8_t>& bytes
   if (length > bytes.size())
     fail("the .glb is cut off: its header says " + std::to_string(length) + " bytes, the file has " +
          std::to_string(bytes.size()));
+  if (length < kHeader + kChunkHeader)
+    fail("the .glb is cut off: its header says " + std::to_string(length) + " bytes, too few for a chunk");
   Container out{true, {}};
   for (size_t at = kHeader, chunk = 0; at < length; ++chunk) {
     if (length - at < kChunkHeader) fail("the .glb is cut off within the header of chunk " + std::to_string(chunk));

@@ -52,6 +52,12 @@ TEST_F(BadInput, BinaryFilesCutOffAnywhereAreRefused) {
   longChunk[12] = char(0xff); // length of the JSON chunk
   longChunk[14] = char(0xff);
   expectError("chunk.glb", longChunk, "chunk 0");
+  // A header that says too little, before a chunk that says too much.
+  for (int length = 0; length < 20; ++length) {
+    std::string shortHeader = whole;
+    shortHeader.replace(8, 8, {char(length), 0, 0, 0, char(0xf0), char(0xff), char(0xff), char(0xff)});
+    expectError("short.glb", shortHeader, "cut off");
+  }
   // One that claims a few bytes more than the file has after it.
   std::string lastChunk = whole;
   lastChunk[whole.size() - 36 - 8] = 40;
