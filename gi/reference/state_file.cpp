@@ -101,7 +101,8 @@ ReferenceSums loadReference(const std::filesystem::path& file, const ReferenceIn
     reader.refuse("holds an image of " + std::to_string(width) + "x" + std::to_string(height) + " (this run's is " +
                   std::to_string(in.camera.width) + "x" + std::to_string(in.camera.height) + ")");
   if (reader.key() != key)
-    reader.refuse("belongs to another picture (same scene, lights, camera, bounces, clamp, seed and kind of buffer expected)");
+    reader.refuse(
+        "belongs to another picture (same scene, lights, camera, bounces, clamp, seed and kind of buffer expected)");
   ReferenceSums sums(width, height);
   reader.value(sums.samples);
   reader.values(std::span(sums.pixels));
