@@ -1,6 +1,7 @@
 #include "gi/reference/state_file.h"
 
 #include "engine/core/checked_file.h"
+#include "engine/core/error.h"
 #include "engine/view/scene_hash.h"
 
 #include <algorithm>
