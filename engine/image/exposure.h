@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/core/color.h"
+#include "engine/core/math.h"
 
 #include <cmath>
 #include <span>

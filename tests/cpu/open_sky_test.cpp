@@ -1,5 +1,6 @@
 #include "engine/trace/embree_query.h"
 #include "engine/trace/open_sky.h"
+#include "tests/support/comparator_world.h"
 #include "tests/support/hand_scene.h"
 
 namespace lambent::test::open_sky_test {
